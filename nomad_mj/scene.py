@@ -1,0 +1,109 @@
+"""Put a robot into a room: two MJCF files and the shared scene become one compiled model."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+
+from nomad_mj.arenas import Arena, FloorPlan, check_arena
+from nomad_mj.assets import find_robot, find_room, models_dir
+from nomad_mj.errors import ModelError
+from nomad_mj.robots import PREFIX, RobotDescription, describe_robot, set_rays_per_cone
+
+CONTROL_TIMESTEP = 0.05  # [s], the rate of the robot's own controller
+ROOM_PREFIX = "room/"
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A robot in a room, ready to be simulated.
+
+    Attributes
+    ----------
+    model : mujoco.MjModel
+        Compiled; sensors sample once a control step.
+    robot : RobotDescription
+        Read from the robot's file.
+    arena : Arena
+        Starts, goal and cameras of the room.
+    plan : FloorPlan
+        Footprints of the room's obstacles.
+    """
+
+    model: mujoco.MjModel
+    robot: RobotDescription
+    arena: Arena
+    plan: FloorPlan
+
+
+def _read(kind: str, path: Path) -> mujoco.MjSpec:
+    try:
+        spec = mujoco.MjSpec.from_file(str(path))
+        spec.copy().compile()
+    except (ValueError, RuntimeError, UnicodeDecodeError) as error:
+        reason = " ".join(str(error).split())
+        raise ModelError(f"{kind} file {str(path)!r} is not valid MJCF: {reason}") from None
+    return spec
+
+
+def _sample_per_control_step(
+    spec: mujoco.MjSpec, control_timestep: float, sub_steps: int
+) -> None:
+    """Let rays be cast once a control step and fast sensors keep a history of it."""
+    for sensor in spec.sensors:
+        if sensor.type == mujoco.mjtSensor.mjSENS_RANGEFINDER:
+            sensor.interval = [control_timestep, 0.0]
+        elif sensor.type == mujoco.mjtSensor.mjSENS_TOUCH or sensor.name == (
+            PREFIX + "translate_encoder"
+        ):
+            sensor.nsample = sub_steps
+
+
+def build_scene(
+    room: str | Path,
+    robot: str | Path,
+    *,
+    control_timestep: float = CONTROL_TIMESTEP,
+    rays_per_cone: int | None = None,
+) -> Scene:
+    """Compile a room and a robot into one model.
+
+    Parameters
+    ----------
+    room, robot : str or Path
+        A name (see `assets.rooms` and `assets.robots`) or an MJCF file.
+    control_timestep : float
+        Time between two samples of the range sensors [s].
+    rays_per_cone : int, optional
+        Overrides how many rays sample a cone of several rays.
+
+    Raises
+    ------
+    NomadError
+        A file that is missing or malformed, an element that is missing, a start inside an
+        obstacle, a goal that cannot be reached.
+    """
+    room_path, robot_path = find_room(room), find_robot(robot)
+    spec = mujoco.MjSpec.from_file(str(models_dir() / "scene.xml"))
+    robot_spec = _read("robot", robot_path)
+    if rays_per_cone is not None:
+        set_rays_per_cone(robot_spec, rays_per_cone)
+    spec.attach(_read("room", room_path), prefix=ROOM_PREFIX, frame=spec.worldbody.add_frame())
+    spec.attach(robot_spec, prefix=PREFIX, frame=spec.worldbody.add_frame())
+    sub_steps = round(control_timestep / spec.option.timestep)
+    _sample_per_control_step(spec, control_timestep, sub_steps)
+    try:
+        model = spec.compile()
+    except ValueError as error:
+        reason = " ".join(str(error).split())
+        raise ModelError(
+            f"room {str(room)!r} and robot {str(robot)!r} do not fit together: {reason}"
+        ) from None
+    # The engine compares times without a tolerance: at the exact interval it skips samples.
+    rays = model.sensor_type == mujoco.mjtSensor.mjSENS_RANGEFINDER
+    model.sensor_interval[rays, 0] = control_timestep - 1e-9
+    description = describe_robot(model, robot_path.stem)
+    arena = Arena.from_model(model, room_path.stem)
+    plan = FloorPlan.from_model(model, description.height, exclude_body_prefix=PREFIX)
+    check_arena(plan, arena, description.layout.radius)
+    return Scene(model, description, arena, plan)

@@ -1,0 +1,121 @@
+"""The simulated robot, asked in its own terms: readings, encoders, pose."""
+
+from typing import Any
+
+import mujoco
+import numpy as np
+from dm_control.mujoco import Physics
+from dm_control.rl.control import PhysicsError
+
+from nomad_mj.robots import JOINTS, PREFIX, RobotDescription
+from nomad_mj.scene import Scene
+from nomad_mj.types import FloatArray, IntArray, Pose
+
+_MISS = 1e6  # [m]; the engine reads -1 where a ray hits nothing
+
+
+class NavigationPhysics(Physics):
+    """dm_control's Physics with named questions, and a step without Python in its way."""
+
+    robot: RobotDescription
+
+    @classmethod
+    def from_scene(cls, scene: Scene) -> "NavigationPhysics":
+        """Return a new simulation of `scene`."""
+        physics = cls.from_model(scene.model)
+        physics.robot = scene.robot
+        physics._bind()
+        return physics
+
+    def _reload_from_data(self, data: Any) -> None:
+        super()._reload_from_data(data)
+        if hasattr(self, "robot"):
+            self._bind()
+
+    def copy(self, share_model: bool = False) -> "NavigationPhysics":
+        """Return an independent copy of this simulation in its present state."""
+        other: NavigationPhysics = super().copy(share_model)
+        other.robot = self.robot
+        other._bind()
+        return other
+
+    def _bind(self) -> None:
+        """Look names up once: the control step reads plain arrays."""
+        model, data = self.model.ptr, self.data.ptr
+        self._raw = (model, data)
+        self._sensordata: FloatArray = data.sensordata
+        rays = self.robot.rays
+        self._ray_buffer = np.empty(len(rays.address))
+        joints = [model.joint(PREFIX + name) for name in JOINTS]
+        self._qpos_address = np.array([int(joint.qposadr[0]) for joint in joints])
+        servo = model.actuator(PREFIX + "steer")
+        self._steer_servo = int(servo.actadr[0])  # -1 where the servo has no memory
+        touch = [model.sensor(PREFIX + name) for name in self.robot.bumpers]
+        self._touch = _history(model, [int(s.id) for s in touch])
+        self._speed = _history(model, [int(model.sensor(PREFIX + "translate_encoder").id)])
+        self._timestep = float(model.opt.timestep)
+        self._angles = np.array(
+            [int(model.sensor(PREFIX + name).adr[0]) for name in ("steer_encoder", "turret_encoder")]
+        )
+
+    def reset(self, keyframe_id: int | None = None) -> None:
+        """Set the simulation to its initial state, without computing any sensor.
+
+        Sensors that sample at intervals keep their first sample of an episode: it must wait for
+        the start pose, that is for `after_reset`.
+        """
+        if keyframe_id is not None:
+            super().reset(keyframe_id)
+        else:
+            mujoco.mj_resetData(*self._raw)
+
+    def step(self, nstep: int = 1) -> None:
+        """Advance by `nstep` physics steps; raise PhysicsError if the simulation diverges."""
+        model, data = self._raw
+        mujoco.mj_step2(model, data)
+        if nstep > 1:
+            mujoco.mj_step(model, data, nstep - 1)
+        mujoco.mj_step1(model, data)
+        if self._warnings.any():
+            kinds = list(mujoco.mjtWarning.__members__)
+            names = [kind for kind, count in zip(kinds, self._warnings, strict=False) if count]
+            raise PhysicsError(f"the simulation diverged at {data.time:.3f} s: {', '.join(names)}")
+
+    def place(self, pose: Pose) -> None:
+        """Put the robot at `pose`, its wheels along the heading, its turret looking along +x."""
+        self.data.qpos[self._qpos_address[:3]] = pose
+        if self._steer_servo >= 0:  # else the servo would turn the wheels back to zero
+            self.data.act[self._steer_servo] = pose.heading
+
+    def cone_ranges(self) -> FloatArray:
+        """Return each cone's shortest ray, (C,) [m] from the perimeter; `_MISS` and over: none."""
+        rays = self.robot.rays
+        values = self._sensordata.take(rays.address, out=self._ray_buffer)
+        values[values < 0] = _MISS
+        return np.minimum.reduceat(values, rays.first) - rays.offset
+
+    def bumpers(self) -> FloatArray:
+        """Return 1 for each bumper touched since the last control step, else 0, (B,)."""
+        forces = self._raw[1].history.take(self._touch)
+        return (forces.max(axis=1, initial=0.0) > 0).astype(np.float64)
+
+    def encoders(self) -> FloatArray:
+        """Return distance driven since the last control step [m], steer and turret angle [rad]."""
+        speed = self._raw[1].history.take(self._speed).sum() * self._timestep
+        steer, turret = self._sensordata.take(self._angles)
+        return np.array([speed, steer, turret])
+
+    def pose(self) -> Pose:
+        """Return the true pose: where the base is and where the wheels point."""
+        x, y, heading = self._raw[1].qpos.take(self._qpos_address[:3]).tolist()
+        return Pose(x, y, heading)
+
+
+def _history(model: mujoco.MjModel, sensors: list[int]) -> IntArray:
+    """Return where in ``data.history`` the last samples of scalar sensors are, (sensors, samples).
+
+    A scalar sensor's buffer holds two numbers of state, the samples' times, then their values.
+    """
+    samples = int(model.sensor_history[sensors[0], 0]) if sensors else 0
+    values = np.arange(2 + samples, 2 + 2 * samples)
+    return np.array([int(model.sensor_historyadr[s]) for s in sensors], dtype=np.intp)[:, None] + values

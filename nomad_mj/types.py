@@ -1,0 +1,85 @@
+"""Plain data shared by the simulation and the agents: no physics, no behaviour."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from typing_extensions import TypeAlias
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+IntArray: TypeAlias = npt.NDArray[np.intp]
+
+
+class Pose(NamedTuple):
+    """A place in the plane: `x`, `y` [m] in the world frame and `heading` [rad], 0 along +x."""
+
+    x: float
+    y: float
+    heading: float
+
+
+@dataclass(frozen=True)
+class RangeRing:
+    """A ring of range sensors of one kind.
+
+    Attributes
+    ----------
+    name : str
+        Name of the ring, e.g. ``"sonar"``.
+    bearings : tuple of float
+        Direction of each sensor's axis in the ring's frame [rad].
+    half_angle : float
+        Half the opening of a sensor's cone [rad].
+    min_range, max_range : float
+        Readings lie in this interval [m], from the robot's perimeter; a miss reads `max_range`.
+    """
+
+    name: str
+    bearings: tuple[float, ...]
+    half_angle: float
+    min_range: float
+    max_range: float
+
+
+@dataclass(frozen=True)
+class SensorLayout:
+    """What perception has to know of a robot: its size and its rings of range sensors.
+
+    Attributes
+    ----------
+    radius : float
+        Radius of the robot's perimeter [m].
+    rings : tuple of RangeRing
+        In the order in which their readings are concatenated.
+    """
+
+    radius: float
+    rings: tuple[RangeRing, ...]
+
+    @property
+    def count(self) -> int:
+        """Number of range sensors in all rings together."""
+        return sum(len(ring.bearings) for ring in self.rings)
+
+
+@dataclass(frozen=True)
+class MotionLimits:
+    """Largest speeds and accelerations of the motors.
+
+    Attributes
+    ----------
+    translate, translate_acceleration : float
+        Driving [m/s], [m/s2].
+    steer, steer_acceleration : float
+        Turning the wheels [rad/s], [rad/s2].
+    turret, turret_acceleration : float
+        Turning the turret [rad/s], [rad/s2].
+    """
+
+    translate: float
+    translate_acceleration: float
+    steer: float
+    steer_acceleration: float
+    turret: float
+    turret_acceleration: float
