@@ -1,0 +1,7 @@
+"""What a room offers: its goal and starts, its floor plan, free places and shortest paths."""
+
+from nomad_mj.arenas.arena import Arena, check_arena
+from nomad_mj.arenas.floor_plan import FloorPlan
+from nomad_mj.arenas.geodesic import Geodesic
+
+__all__ = ["Arena", "FloorPlan", "Geodesic", "check_arena"]

@@ -1,0 +1,119 @@
+"""What a compiled room tells about itself: goal, starts and cameras."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+import shapely
+from typing_extensions import Self
+
+from nomad_mj.arenas.floor_plan import FloorPlan
+from nomad_mj.errors import ModelError, StartError
+from nomad_mj.types import FloatArray
+
+ROBOT_PREFIX = "robot/"
+
+
+@dataclass(frozen=True, eq=False)
+class Arena:
+    """The places and cameras a room offers.
+
+    Attributes
+    ----------
+    name : str
+        Name of the room.
+    goal : ndarray, shape (2,)
+        World frame [m].
+    starts : ndarray, shape (N, 3)
+        x, y [m] and heading [rad] of each start, world frame, in the order of the file.
+    start_names : tuple of str
+        Names of their sites.
+    cameras : tuple of str
+        Names of the room's own cameras.
+    """
+
+    name: str
+    goal: FloatArray
+    starts: FloatArray
+    start_names: tuple[str, ...]
+    cameras: tuple[str, ...]
+
+    @classmethod
+    def from_model(cls, model: mujoco.MjModel, name: str) -> Self:
+        """Read a compiled room, with or without a robot in it.
+
+        Parameters
+        ----------
+        model : mujoco.MjModel
+            The room; its sites stand at their initial pose.
+        name : str
+            What to call it, also in errors: the room's name or file.
+
+        Raises
+        ------
+        ModelError
+            If the room has no goal or no start.
+        """
+        data = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+        sites = _own(model.site(i).name for i in range(model.nsite))
+        starts = tuple(site for site in sites if site.startswith("start"))
+        there = ", ".join(sites) or "none"
+        if "goal" not in sites:
+            raise ModelError(f"room {name!r} has no site named 'goal'; sites there are: {there}")
+        if not starts:
+            raise ModelError(
+                f"room {name!r} has no site whose name begins with 'start'; "
+                f"sites there are: {there}"
+            )
+        poses = np.array([_planar_pose(data, site) for site in starts])
+        cameras = _own(model.camera(i).name for i in range(model.ncam))
+        return cls(name, _planar_pose(data, "goal")[:2], poses, starts, cameras)
+
+
+def check_arena(plan: FloorPlan, arena: Arena, radius: float) -> None:
+    """Make sure that a robot fits at every start and at the goal and can go from one to the other.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        The room's plan.
+    arena : Arena
+        Its goal and starts.
+    radius : float
+        Radius of the robot's perimeter [m].
+
+    Raises
+    ------
+    StartError
+        Naming the first place that is wrong.
+    """
+    places = np.concatenate([arena.goal[None], arena.starts[:, :2]])
+    names = ("goal", *arena.start_names)
+    depth = -plan.clearance(places, radius)
+    for name, place, overlap in zip(names, places, depth, strict=True):
+        if overlap > 0:
+            raise StartError(
+                f"room {arena.name!r}: a robot of radius {radius:g} m at site {name!r} "
+                f"({place[0]:.2f}, {place[1]:.2f}) overlaps {plan.nearest_name(place)!r} by "
+                f"{overlap:.3f} m; move one of them by that much"
+            )
+    space = plan.free_space(radius, arena.goal)
+    for name, place in zip(names, places, strict=True):
+        if not shapely.intersects_xy(space, *place):
+            raise StartError(
+                f"room {arena.name!r}: a robot of radius {radius:g} m cannot reach the goal "
+                f"({arena.goal[0]:.2f}, {arena.goal[1]:.2f}) from site {name!r} "
+                f"({place[0]:.2f}, {place[1]:.2f}); open a passage wider than {2 * radius:g} m"
+            )
+
+
+def _own(names: Iterable[str]) -> tuple[str, ...]:
+    return tuple(name for name in names if name and not name.startswith(ROBOT_PREFIX))
+
+
+def _planar_pose(data: mujoco.MjData, site: str) -> FloatArray:
+    view = data.site(site)
+    heading = np.arctan2(view.xmat[3], view.xmat[0])
+    return np.array([view.xpos[0], view.xpos[1], heading])

@@ -1,0 +1,88 @@
+"""Starts spread evenly over a room: how the start sites of the rooms in `models/arenas` were made.
+
+``python -m nomad_mj.arenas.starts ROOM.xml [COUNT]`` prints them as lines of MJCF.
+"""
+
+import sys
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+import shapely
+from scipy.stats import qmc
+
+from nomad_mj.arenas.floor_plan import FloorPlan
+from nomad_mj.errors import StartError
+from nomad_mj.types import FloatArray
+
+RADIUS = 0.265
+"""Radius of the Nomad 200's perimeter [m]."""
+
+ROBOT_HEIGHT = 0.9
+CLEARANCE = 0.12
+MIN_GOAL_DISTANCE = 1.2
+
+_MOST_POINTS = 4096
+
+
+def halton_starts(
+    plan: FloorPlan,
+    n: int,
+    goal: npt.ArrayLike,
+    radius: float = RADIUS,
+    clearance: float = CLEARANCE,
+    min_goal_distance: float = MIN_GOAL_DISTANCE,
+) -> FloatArray:
+    """Return the first points of the Halton sequence (bases 2 and 3) that can be starts.
+
+    The sequence fills the rectangle around the places that can be reached from the goal; of a
+    room with closed walls this is its interior.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        The room.
+    n : int
+        How many.
+    goal : array_like, shape (2,)
+        The goal, world frame [m].
+    radius : float
+        Radius of the robot [m].
+    clearance : float
+        Its perimeter is farther than this from everything [m].
+    min_goal_distance : float
+        Its centre is at least this far from the goal, in a straight line [m].
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+
+    Raises
+    ------
+    StartError
+        If the goal is blocked or the room has not so many such places.
+    """
+    low, high = np.reshape(plan.interior(0.0, goal).bounds, (2, 2))
+    points = low + (high - low) * qmc.Halton(2, scramble=False).random(_MOST_POINTS)
+    keep = shapely.contains_xy(plan.interior(radius, goal), points)
+    keep &= plan.clearance(points, radius) > clearance
+    keep &= np.linalg.norm(points - np.asarray(goal), axis=-1) >= min_goal_distance
+    if keep.sum() < n:
+        raise StartError(
+            f"the room has only {keep.sum()} of {n} starts {clearance:g} m clear of everything and "
+            f"{min_goal_distance:g} m from the goal; ask for fewer, or make room"
+        )
+    return points[keep][:n]
+
+
+def main(room: str, count: int) -> None:
+    """Print start sites for a room's file."""
+    model = mujoco.MjModel.from_xml_path(room)
+    goal = model.site("goal").pos[:2]
+    plan = FloorPlan.from_model(model, ROBOT_HEIGHT)
+    for i, (x, y) in enumerate(halton_starts(plan, count, goal)):
+        print(f'    <site class="start" name="start_{i:02d}" pos="{x:.4f} {y:.4f} 0"/>')
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 50)
