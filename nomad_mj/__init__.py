@@ -1,0 +1,27 @@
+"""nomad_mj: a simulated Nomad 200 that learns to find its goal, on MuJoCo and dm_control."""
+
+from nomad_mj._gl import choose_backend
+
+choose_backend()  # before anything imports mujoco or dm_control, which read MUJOCO_GL only once
+
+from nomad_mj.assets import robots, rooms  # noqa: E402
+from nomad_mj.envs import PathFinding, PathFindingConfig, load  # noqa: E402
+from nomad_mj.errors import NomadError  # noqa: E402
+from nomad_mj.motion import Outcome  # noqa: E402
+from nomad_mj.tasks import MotorConfig, MotorEnvironment, OdometryNoise, RangeNoise  # noqa: E402
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "MotorConfig",
+    "MotorEnvironment",
+    "NomadError",
+    "OdometryNoise",
+    "Outcome",
+    "PathFinding",
+    "PathFindingConfig",
+    "RangeNoise",
+    "load",
+    "robots",
+    "rooms",
+]

@@ -1,9 +1,11 @@
 """Put a robot into a room: two MJCF files and the shared scene become one compiled model."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import mujoco
+import shapely
 
 from nomad_mj.arenas import Arena, FloorPlan, check_arena
 from nomad_mj.assets import find_robot, find_room, models_dir
@@ -35,6 +37,13 @@ class Scene:
     arena: Arena
     plan: FloorPlan
 
+    @cached_property
+    def free_space(self) -> shapely.Polygon:
+        """Where the robot's centre can be and still reach the goal, prepared for queries."""
+        space = self.plan.free_space(self.robot.layout.radius, self.arena.goal)
+        shapely.prepare(space)
+        return space
+
 
 def _read(kind: str, path: Path) -> mujoco.MjSpec:
     try:
@@ -46,13 +55,11 @@ def _read(kind: str, path: Path) -> mujoco.MjSpec:
     return spec
 
 
-def _sample_per_control_step(
-    spec: mujoco.MjSpec, control_timestep: float, sub_steps: int
-) -> None:
+def _sample_per_control_step(spec: mujoco.MjSpec, sub_steps: int) -> None:
     """Let rays be cast once a control step and fast sensors keep a history of it."""
     for sensor in spec.sensors:
         if sensor.type == mujoco.mjtSensor.mjSENS_RANGEFINDER:
-            sensor.interval = [control_timestep, 0.0]
+            sensor.interval = [CONTROL_TIMESTEP, 0.0]
         elif sensor.type == mujoco.mjtSensor.mjSENS_TOUCH or sensor.name == (
             PREFIX + "translate_encoder"
         ):
@@ -63,7 +70,6 @@ def build_scene(
     room: str | Path,
     robot: str | Path,
     *,
-    control_timestep: float = CONTROL_TIMESTEP,
     rays_per_cone: int | None = None,
 ) -> Scene:
     """Compile a room and a robot into one model.
@@ -72,8 +78,6 @@ def build_scene(
     ----------
     room, robot : str or Path
         A name (see `assets.rooms` and `assets.robots`) or an MJCF file.
-    control_timestep : float
-        Time between two samples of the range sensors [s].
     rays_per_cone : int, optional
         Overrides how many rays sample a cone of several rays.
 
@@ -90,8 +94,8 @@ def build_scene(
         set_rays_per_cone(robot_spec, rays_per_cone)
     spec.attach(_read("room", room_path), prefix=ROOM_PREFIX, frame=spec.worldbody.add_frame())
     spec.attach(robot_spec, prefix=PREFIX, frame=spec.worldbody.add_frame())
-    sub_steps = round(control_timestep / spec.option.timestep)
-    _sample_per_control_step(spec, control_timestep, sub_steps)
+    sub_steps = round(CONTROL_TIMESTEP / spec.option.timestep)
+    _sample_per_control_step(spec, sub_steps)
     try:
         model = spec.compile()
     except ValueError as error:
@@ -101,7 +105,7 @@ def build_scene(
         ) from None
     # The engine compares times without a tolerance: at the exact interval it skips samples.
     rays = model.sensor_type == mujoco.mjtSensor.mjSENS_RANGEFINDER
-    model.sensor_interval[rays, 0] = control_timestep - 1e-9
+    model.sensor_interval[rays, 0] = CONTROL_TIMESTEP - 1e-9
     description = describe_robot(model, robot_path.stem)
     arena = Arena.from_model(model, room_path.stem)
     plan = FloorPlan.from_model(model, description.height, exclude_body_prefix=PREFIX)

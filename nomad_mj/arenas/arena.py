@@ -1,18 +1,15 @@
 """What a compiled room tells about itself: goal, starts and cameras."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-import shapely
 from typing_extensions import Self
 
 from nomad_mj.arenas.floor_plan import FloorPlan
+from nomad_mj.arenas.names import room_name
 from nomad_mj.errors import ModelError, StartError
 from nomad_mj.types import FloatArray
-
-ROBOT_PREFIX = "robot/"
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,9 +25,9 @@ class Arena:
     starts : ndarray, shape (N, 3)
         x, y [m] and heading [rad] of each start, world frame, in the order of the file.
     start_names : tuple of str
-        Names of their sites.
+        Names of their sites, as the room's file gives them.
     cameras : tuple of str
-        Names of the room's own cameras.
+        Names of the room's own cameras, likewise.
     """
 
     name: str
@@ -57,8 +54,9 @@ class Arena:
         """
         data = mujoco.MjData(model)
         mujoco.mj_kinematics(model, data)
-        sites = _own(model.site(i).name for i in range(model.nsite))
-        starts = tuple(site for site in sites if site.startswith("start"))
+        sites = {room_name(model.site(i).name): i for i in range(model.nsite)}
+        sites.pop("", None)
+        starts = {site: i for site, i in sites.items() if site.startswith("start")}
         there = ", ".join(sites) or "none"
         if "goal" not in sites:
             raise ModelError(f"room {name!r} has no site named 'goal'; sites there are: {there}")
@@ -67,9 +65,11 @@ class Arena:
                 f"room {name!r} has no site whose name begins with 'start'; "
                 f"sites there are: {there}"
             )
-        poses = np.array([_planar_pose(data, site) for site in starts])
-        cameras = _own(model.camera(i).name for i in range(model.ncam))
-        return cls(name, _planar_pose(data, "goal")[:2], poses, starts, cameras)
+        poses = np.array([_planar_pose(data, site) for site in starts.values()])
+        cameras = filter(None, (room_name(model.camera(i).name) for i in range(model.ncam)))
+        return cls(
+            name, _planar_pose(data, sites["goal"])[:2], poses, tuple(starts), tuple(cameras)
+        )
 
 
 def check_arena(plan: FloorPlan, arena: Arena, radius: float) -> None:
@@ -99,9 +99,9 @@ def check_arena(plan: FloorPlan, arena: Arena, radius: float) -> None:
                 f"({place[0]:.2f}, {place[1]:.2f}) overlaps {plan.nearest_name(place)!r} by "
                 f"{overlap:.3f} m; move one of them by that much"
             )
-    space = plan.free_space(radius, arena.goal)
-    for name, place in zip(names, places, strict=True):
-        if not shapely.intersects_xy(space, *place):
+    reached = plan.reaches(places, arena.goal, radius)
+    for name, place, good in zip(names, places, reached, strict=True):
+        if not good:
             raise StartError(
                 f"room {arena.name!r}: a robot of radius {radius:g} m cannot reach the goal "
                 f"({arena.goal[0]:.2f}, {arena.goal[1]:.2f}) from site {name!r} "
@@ -109,11 +109,7 @@ def check_arena(plan: FloorPlan, arena: Arena, radius: float) -> None:
             )
 
 
-def _own(names: Iterable[str]) -> tuple[str, ...]:
-    return tuple(name for name in names if name and not name.startswith(ROBOT_PREFIX))
-
-
-def _planar_pose(data: mujoco.MjData, site: str) -> FloatArray:
-    view = data.site(site)
-    heading = np.arctan2(view.xmat[3], view.xmat[0])
-    return np.array([view.xpos[0], view.xpos[1], heading])
+def _planar_pose(data: mujoco.MjData, site: int) -> FloatArray:
+    x, y, _ = data.site_xpos[site]
+    rotation = data.site_xmat[site]
+    return np.array([x, y, np.arctan2(rotation[3], rotation[0])])

@@ -10,6 +10,7 @@ from shapely.geometry.base import BaseGeometry
 from typing_extensions import Self
 
 from nomad_mj.arenas.footprints import footprints
+from nomad_mj.arenas.names import ROBOT_PREFIX
 from nomad_mj.errors import StartError
 from nomad_mj.types import FloatArray
 
@@ -34,7 +35,7 @@ class FloorPlan:
     Attributes
     ----------
     names : tuple of str
-        Names of the footprints' geoms.
+        Names of the footprints' geoms, as the room's file gives them.
     footprints : tuple of geometry
         Convex polygons, in the order of `names`. Those of round things are drawn around them,
         less than 2 mm too wide.
@@ -49,7 +50,7 @@ class FloorPlan:
 
     @classmethod
     def from_model(
-        cls, model: mujoco.MjModel, robot_height: float, exclude_body_prefix: str = "robot/"
+        cls, model: mujoco.MjModel, robot_height: float, exclude_body_prefix: str = ROBOT_PREFIX
     ) -> Self:
         """Read the plan off a compiled room, all bodies at their initial pose.
 
@@ -73,6 +74,13 @@ class FloorPlan:
     def bounds(self) -> FloatArray:
         """Smallest rectangle around all footprints: ``[x0, y0, x1, y1]``; NaN in an empty plan."""
         return np.asarray(self._union.bounds, dtype=np.float64)
+
+    def describe_bounds(self) -> str:
+        """Say where the floor is: what closed walls surround, else the rectangle `bounds`."""
+        rings = (ring for part in shapely.get_parts(self._union) for ring in part.interiors)
+        enclosed = max((shapely.Polygon(ring) for ring in rings), key=shapely.area, default=None)
+        x0, y0, x1, y1 = (enclosed or self._union).bounds
+        return f"{x0:g} to {x1:g} m in x and {y0:g} to {y1:g} m in y"
 
     def clearance(self, xy: npt.ArrayLike, radius: float) -> FloatArray:
         """Return the distance from a disc's perimeter to the nearest footprint.
@@ -132,6 +140,23 @@ class FloorPlan:
             f"{self.nearest_name(seed_point)!r} is in the way; "
             "its centre must be that far from everything"
         )
+
+    def reaches(
+        self, xy: npt.ArrayLike, goal: npt.ArrayLike, radius: float
+    ) -> npt.NDArray[np.bool_]:
+        """Whether a disc of this radius can go from places (..., 2) to the goal (2,).
+
+        Returns
+        -------
+        ndarray of bool, shape (...)
+
+        Raises
+        ------
+        StartError
+            If the disc does not fit at the goal.
+        """
+        space = self.free_space(radius, goal)
+        return np.asarray(shapely.intersects_xy(space, np.asarray(xy, dtype=np.float64)))
 
     def interior(self, radius: float, seed_point: npt.ArrayLike) -> BaseGeometry:
         """Return `free_space`, cut near the footprints where the room's walls do not close.

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from nomad_mj.arenas.names import room_name
 from nomad_mj.errors import ModelError
 from nomad_mj.types import FloatArray
 
@@ -49,7 +50,7 @@ def footprints(
         collides = model.geom_contype[geom] | model.geom_conaffinity[geom]
         if not collides or excluded[model.geom_bodyid[geom]]:
             continue
-        name = model.geom(geom).name or f"geom {geom}"
+        name = room_name(model.geom(geom).name) or f"geom {geom}"
         if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
             _check_level(data.geom_xmat[geom], name)
             continue
@@ -118,7 +119,8 @@ def _project(points: FloatArray, spread: FloatArray) -> BaseGeometry:
         axes = vectors * np.sqrt(np.maximum(values, 0.0))
         outline = _unit_circle(float(np.sqrt(values[-1]))) @ axes.T
         points = (points[:, None] + outline).reshape(-1, 2)
-    return shapely.MultiPoint(points).convex_hull
+    hull = shapely.MultiPoint(points).convex_hull
+    return hull if hull.area else hull.buffer(1e-6)  # a flat mesh on edge: still a polygon
 
 
 def _unit_circle(scale: float) -> FloatArray:

@@ -4,7 +4,7 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from dm_control.mujoco import Physics
+from dm_control.mujoco import Physics, wrapper
 from dm_control.rl.control import PhysicsError
 
 from nomad_mj.robots import JOINTS, PREFIX, RobotDescription
@@ -22,7 +22,7 @@ class NavigationPhysics(Physics):
     @classmethod
     def from_scene(cls, scene: Scene) -> "NavigationPhysics":
         """Return a new simulation of `scene`."""
-        physics = cls.from_model(scene.model)
+        physics = cls.from_model(wrapper.MjModel(scene.model))
         physics.robot = scene.robot
         physics._bind()
         return physics
@@ -92,7 +92,9 @@ class NavigationPhysics(Physics):
         rays = self.robot.rays
         values = self._sensordata.take(rays.address, out=self._ray_buffer)
         values[values < 0] = _MISS
-        return np.minimum.reduceat(values, rays.first) - rays.offset
+        cones = np.minimum.reduceat(values, rays.first)
+        cones[cones >= rays.maximum] = _MISS  # the engine cuts what lies farther off to this
+        return cones - rays.offset
 
     def bumpers(self) -> FloatArray:
         """Return 1 for each bumper touched since the last control step, else 0, (B,)."""

@@ -1,0 +1,101 @@
+"""Load an environment by name, as dm_control's users expect."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, Literal, overload
+
+import numpy as np
+
+from nomad_mj.envs.path_finding import PathFinding, PathFindingConfig
+from nomad_mj.errors import ConfigError, UnknownNameError
+from nomad_mj.scene import Scene, build_scene
+from nomad_mj.tasks import MotorConfig, MotorEnvironment, MotorTask
+
+TASKS = ("motor", "path_finding")
+DEFAULT_ROOM = "paper_room"
+DEFAULT_ROBOT = "nomad200"
+
+
+def _config(cls: type[Any], options: dict[str, Any]) -> Any:
+    """Return a config made of the `options` that it knows, taking them out."""
+    return cls(**{f.name: options.pop(f.name) for f in fields(cls) if f.name in options})
+
+
+def _refuse(what: str, left: Mapping[str, Any], known: list[str]) -> None:
+    if left:
+        raise ConfigError(f"unknown {what} {next(iter(left))!r}; there are: {', '.join(known)}")
+
+
+def make_motor(scene: Scene, options: dict[str, Any]) -> MotorTask:
+    """Return the motor task of a scene, taking its options (and ``random``) out of `options`."""
+    random: int | np.random.SeedSequence | None = options.pop("random", None)
+    return MotorTask(scene, _config(MotorConfig, options), random)
+
+
+@overload
+def load(
+    task_name: Literal["path_finding"] = "path_finding",
+    room: str | Path = DEFAULT_ROOM,
+    robot: str | Path = DEFAULT_ROBOT,
+    task_kwargs: Mapping[str, Any] | None = None,
+    environment_kwargs: Mapping[str, Any] | None = None,
+) -> PathFinding: ...
+
+
+@overload
+def load(
+    task_name: Literal["motor"],
+    room: str | Path = DEFAULT_ROOM,
+    robot: str | Path = DEFAULT_ROBOT,
+    task_kwargs: Mapping[str, Any] | None = None,
+    environment_kwargs: Mapping[str, Any] | None = None,
+) -> MotorEnvironment: ...
+
+
+def load(
+    task_name: str = "path_finding",
+    room: str | Path = DEFAULT_ROOM,
+    robot: str | Path = DEFAULT_ROBOT,
+    task_kwargs: Mapping[str, Any] | None = None,
+    environment_kwargs: Mapping[str, Any] | None = None,
+) -> PathFinding | MotorEnvironment:
+    """Return an environment.
+
+    Parameters
+    ----------
+    task_name : "path_finding" or "motor"
+        Decisions (dx, dy), or motor velocities at 20 Hz.
+    room, robot : str or Path
+        The name of one that comes with the package, or an MJCF file.
+    task_kwargs : mapping, optional
+        ``random`` (seed), ``rays_per_cone`` and the fields of `MotorConfig`; for path finding
+        those of `PathFindingConfig` too.
+    environment_kwargs : mapping, optional
+        ``time_limit`` [s]; for the motor task ``flat_observation`` too.
+
+    Raises
+    ------
+    NomadError
+        Anything wrong with these, in one line.
+    """
+    if task_name not in TASKS:
+        raise UnknownNameError("task", task_name, TASKS)
+    options = dict(task_kwargs or {})
+    environment = dict(environment_kwargs or {})
+    scene = build_scene(room, robot, rays_per_cone=options.pop("rays_per_cone", None))
+    known = ["random", "rays_per_cone", *(f.name for f in fields(MotorConfig))]
+    accepts = ["time_limit"]
+    if task_name == "motor":
+        accepts.append("flat_observation")
+        _refuse("environment option", {k: 0 for k in environment if k not in accepts}, accepts)
+        task = make_motor(scene, options)
+        _refuse("task option", options, known)
+        return MotorEnvironment(task, **environment)
+    _refuse("environment option", {k: 0 for k in environment if k not in accepts}, accepts)
+    config = _config(PathFindingConfig, options)
+    task = make_motor(scene, {**options, "ends_at_goal": False})
+    for name in known:
+        options.pop(name, None)
+    _refuse("task option", options, known + [f.name for f in fields(PathFindingConfig)])
+    return PathFinding(MotorEnvironment(task, time_limit=np.inf), config, **environment)

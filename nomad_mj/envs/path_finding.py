@@ -1,0 +1,200 @@
+"""Path finding: the decision level of the paper, a `dm_env` environment above the motor task."""
+
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import dm_env
+import numpy as np
+from dm_env import specs
+
+from nomad_mj.errors import ConfigError
+from nomad_mj.motion import (
+    ActionSpec,
+    MotionConfig,
+    Outcome,
+    SynchroMove,
+    displacement,
+    reinforcement,
+)
+from nomad_mj.scene import CONTROL_TIMESTEP, Scene
+from nomad_mj.tasks import MotorEnvironment, NavigationPhysics, Start
+from nomad_mj.types import FloatArray
+
+_TURRET_GAIN = 4.0  # [1/s] with which the turret holds its direction
+
+
+@dataclass(frozen=True)
+class PathFindingConfig:
+    """Options of path finding beside those of the motor task.
+
+    Attributes
+    ----------
+    action : ActionSpec
+        Lengths of moves.
+    motion : MotionConfig
+        How carefully moves are carried out.
+    """
+
+    action: ActionSpec = field(default_factory=ActionSpec)
+    motion: MotionConfig = field(default_factory=MotionConfig)
+
+
+class PathFinding(dm_env.Environment):
+    """Find the way to the goal, one move at a time.
+
+    The action is (dx, dy) in [-1, 1] in the frame of the shortest path vector. A step lasts until
+    the move is done, stopped by a virtual collision (the robot then retracts), bumped or timed
+    out. Observations are those of the motor task after the move, and of the move itself:
+    ``duration`` [s], ``clearance`` [m], ``outcome`` (see `Outcome`). The reward is z of Eqs 6-8.
+    Reaching the goal ends the episode with discount 0, the time limit with discount 1.
+
+    Parameters
+    ----------
+    motor : MotorEnvironment
+        The motor task that carries out the moves; neither its goal nor its time limit may end
+        the episode.
+    config : PathFindingConfig
+        Options.
+    time_limit : float
+        Length of an episode [s of simulated time].
+    """
+
+    def __init__(
+        self,
+        motor: MotorEnvironment,
+        config: PathFindingConfig | None = None,
+        time_limit: float = 300.0,
+    ) -> None:
+        if not time_limit > 0:
+            raise ConfigError(f"time limit {time_limit}: must be above 0 s")
+        self.motor = motor
+        self.config = config or PathFindingConfig()
+        self.on_control_step: Callable[[dm_env.TimeStep], None] | None = None
+        self._time_limit = time_limit
+        layout = self.scene.robot.layout
+        self._rings = [ring.name for ring in layout.rings]
+        self._bearings = np.concatenate([ring.bearings for ring in layout.rings])
+        self._over = True
+        self._ticks = 0
+        self._sense: FloatArray = np.zeros(layout.count)
+        self._inner: dm_env.TimeStep | None = None
+
+    @property
+    def scene(self) -> Scene:
+        """The robot and the room."""
+        return self.motor.task.scene
+
+    @property
+    def physics(self) -> NavigationPhysics:
+        """The simulation."""
+        return self.motor.physics
+
+    def action_spec(self) -> specs.BoundedArray:
+        """Return (dx, dy) in [-1, 1]."""
+        return specs.BoundedArray((2,), np.float64, -1.0, 1.0, name="move")
+
+    def reward_spec(self) -> specs.BoundedArray:
+        """Return z in [-1, 0]."""
+        return specs.BoundedArray((), np.float64, -1.0, 0.0, name="reward")
+
+    def observation_spec(self) -> "OrderedDict[str, specs.Array]":
+        """Return the motor task's observations and what is told of the move."""
+        result = OrderedDict(self.motor.observation_spec())
+        limit = self.config.motion.time_out + 10.0
+        result["duration"] = specs.BoundedArray((), np.float64, 0.0, limit, name="duration")
+        result["clearance"] = specs.BoundedArray((), np.float64, 0.0, np.inf, name="clearance")
+        result["outcome"] = specs.DiscreteArray(len(Outcome), np.int64, name="outcome")
+        return result
+
+    def reset(
+        self, seed: int | np.random.SeedSequence | None = None, start: Start = None
+    ) -> dm_env.TimeStep:
+        """Start a new episode; arguments and errors as of `MotorEnvironment.reset`."""
+        self._inner = self.motor.reset(seed, start)
+        self._over = False
+        self._ticks = 0
+        self._read(self._inner.observation)
+        return dm_env.restart(self._observe(0.0, float(self._sense.min()), Outcome.NONE))
+
+    def step(self, action: Any) -> dm_env.TimeStep:
+        """Carry out one move and return what became of it."""
+        if self._over or self._inner is None:
+            return self.reset()
+        action = np.asarray(action, dtype=np.float64)
+        if action.shape != (2,) or not np.isfinite(action).all():
+            raise ValueError(f"action {action}: must be two finite numbers (dx, dy) in [-1, 1]")
+        goal: FloatArray = self._inner.observation["goal"]
+        move = displacement(np.clip(action, -1.0, 1.0), goal, self.config.action)
+        outcome, clearance, ticks = self._carry_out(move)
+        self._ticks += ticks
+        collided = outcome in (Outcome.VIRTUAL_COLLISION, Outcome.BUMPED)
+        reward = float(reinforcement(move, goal, clearance, collided))
+        observation = self._observe(ticks * CONTROL_TIMESTEP, clearance, outcome)
+        task = self.motor.task
+        if task.goal_distance(self.physics) <= task.config.goal_radius:
+            self._over = True
+            return dm_env.termination(reward, observation)
+        if self._ticks * CONTROL_TIMESTEP >= self._time_limit:
+            self._over = True
+            return dm_env.truncation(reward, observation, 1.0)
+        return dm_env.transition(reward, observation, 1.0)
+
+    def _carry_out(self, move: FloatArray) -> tuple[Outcome, float, int]:
+        """Drive a displacement (2,) [m]; return outcome, clearance [m] and control steps."""
+        x, y = move.tolist()
+        wheels, turret = self._angles()
+        heading = float(np.arctan2(y, x))
+        drive = SynchroMove(
+            heading, float(np.hypot(x, y)), wheels,
+            self.scene.robot.limits, self.config.motion, CONTROL_TIMESTEP,
+        )
+        watched, ahead = heading, self._ahead(heading, turret)
+        distance, bumped, clearance, ticks = 0.0, False, np.inf, 0
+        while True:
+            if drive.motion_heading != watched:
+                watched = drive.motion_heading
+                ahead = self._ahead(watched, turret)
+            free = float(self._sense.take(ahead).min(initial=np.inf))
+            speed, steer = drive.command(distance, wheels, free, bumped)
+            if drive.done:
+                return drive.outcome, clearance, ticks
+            self._inner = self.motor.step((speed, steer, -_TURRET_GAIN * turret))
+            observation = self._inner.observation
+            self._read(observation)
+            distance = float(observation["encoders"][0])
+            bumped = bool(observation["bumpers"].any())
+            wheels, turret = self._angles()
+            clearance = min(clearance, float(self._sense.min()))
+            ticks += 1
+            if self.on_control_step is not None:
+                self.on_control_step(self._inner)
+
+    def _read(self, observation: "OrderedDict[str, FloatArray]") -> None:
+        self._sense = np.concatenate([observation[name] for name in self._rings])
+
+    def _angles(self) -> tuple[float, float]:
+        """Return the directions of the wheels and of the turret by odometry [rad]."""
+        assert self._inner is not None
+        _, _, wheels, turret = self._inner.observation["odometry"].tolist()
+        return wheels, turret
+
+    def _ahead(self, heading: float, turret: float) -> Any:
+        """Return the indices of the sensors that look within `ahead` of a heading [rad]."""
+        off = (self._bearings + turret - heading + np.pi) % (2 * np.pi) - np.pi
+        return np.flatnonzero(np.abs(off) <= self.config.motion.ahead + 1e-9)
+
+    def _observe(
+        self, duration: float, clearance: float, outcome: Outcome
+    ) -> "OrderedDict[str, Any]":
+        assert self._inner is not None
+        observation = OrderedDict(self._inner.observation)
+        observation["duration"] = np.array(duration)
+        observation["clearance"] = np.array(clearance)
+        observation["outcome"] = np.array(int(outcome))
+        return observation
+
+    def close(self) -> None:
+        """Free the simulation and its OpenGL contexts."""
+        self.motor.close()

@@ -1,0 +1,69 @@
+"""dm_control's environment, with a seed and a start for `reset` and a `close` that closes."""
+
+import dm_env
+import numpy as np
+from dm_control.rl import control
+
+from nomad_mj.errors import ConfigError
+from nomad_mj.scene import CONTROL_TIMESTEP
+from nomad_mj.tasks.motor import MotorTask
+from nomad_mj.tasks.physics import NavigationPhysics
+from nomad_mj.tasks.starts import Start
+
+
+class MotorEnvironment(control.Environment):
+    """A `dm_control.rl.control.Environment` around a `MotorTask`.
+
+    Parameters
+    ----------
+    task : MotorTask
+        The task; the simulation is made from its scene.
+    time_limit : float
+        Length of an episode [s of simulated time]; its end is a truncation, discount 1.
+    flat_observation : bool
+        Concatenate all observations into one array.
+    """
+
+    def __init__(
+        self,
+        task: MotorTask,
+        time_limit: float = 120.0,
+        flat_observation: bool = False,
+    ) -> None:
+        if not time_limit > 0:
+            raise ConfigError(f"time limit {time_limit}: must be above 0 s")
+        super().__init__(
+            NavigationPhysics.from_scene(task.scene),
+            task,
+            time_limit=time_limit,
+            control_timestep=CONTROL_TIMESTEP,
+            flat_observation=flat_observation,
+        )
+
+    def reset(
+        self, seed: int | np.random.SeedSequence | None = None, start: Start = None
+    ) -> dm_env.TimeStep:
+        """Start a new episode.
+
+        Parameters
+        ----------
+        seed : int or SeedSequence, optional
+            Start the sequence of episodes anew from it; None goes on with the present one.
+        start : str, int or sequence of float, optional
+            Name or number of a start of the room's, or x, y[, heading] in metres and radians;
+            None for one of the room's at random.
+
+        Raises
+        ------
+        StartError, UnknownNameError
+            See `starts.resolve_start`.
+        """
+        if start is not None:
+            self.task.start_next_at(start)
+        if seed is not None:
+            self.task.seed(seed)
+        return super().reset()
+
+    def close(self) -> None:
+        """Free the simulation and its OpenGL contexts."""
+        self.physics.free()

@@ -1,0 +1,178 @@
+"""The motor task: drive the three motors at 20 Hz on sensor readings."""
+
+from collections import OrderedDict
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from dm_control.rl import control
+from dm_control.utils import rewards
+from dm_env import specs
+
+from nomad_mj.errors import ConfigError
+from nomad_mj.robots import ACTUATORS, PREFIX
+from nomad_mj.scene import Scene
+from nomad_mj.tasks.noise import OdometryNoise, RangeNoise, RangeNoiseStream
+from nomad_mj.tasks.odometry import Odometry
+from nomad_mj.tasks.physics import NavigationPhysics
+from nomad_mj.tasks.starts import Start, resolve_start
+from nomad_mj.types import FloatArray, Pose
+
+REWARD_MARGIN = 5.0  # [m] from the goal at which the reward has fallen to 0.1
+
+
+@dataclass(frozen=True)
+class MotorConfig:
+    """Options of the motor task.
+
+    Attributes
+    ----------
+    range_noise, odometry_noise
+        How the sensors err.
+    goal_radius : float
+        The goal is reached when the robot's centre is this near [m].
+    ends_at_goal : bool
+        Whether reaching the goal ends the episode.
+    """
+
+    range_noise: RangeNoise = field(default_factory=RangeNoise)
+    odometry_noise: OdometryNoise = field(default_factory=OdometryNoise)
+    goal_radius: float = 0.2
+    ends_at_goal: bool = True
+
+    def __post_init__(self) -> None:
+        if not self.goal_radius > 0:
+            raise ConfigError(f"goal radius {self.goal_radius}: must be above 0 m")
+
+
+class MotorTask(control.Task):
+    """Reach the goal with motor velocities as actions.
+
+    Observations, all float64: one array of ranges [m] for each ring, under the ring's name;
+    ``bumpers`` (0 or 1); ``encoders`` (distance driven in this control step [m], steer and turret
+    angle [rad]); ``odometry`` (x, y [m], heading of the wheels and of the turret [rad]); ``goal``,
+    the vector from the odometry's position to the goal [m]. The reward is 1 at the goal and falls
+    smoothly with the true distance to it.
+
+    Parameters
+    ----------
+    scene : Scene
+        Robot and room.
+    config : MotorConfig
+        Options.
+    random : int, SeedSequence or None
+        Seed; the n-th episode after it is the same whatever was done in the ones before.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        config: MotorConfig | None = None,
+        random: int | np.random.SeedSequence | None = None,
+    ) -> None:
+        self.scene = scene
+        self.config = config or MotorConfig()
+        self._start: Start = None
+        self.seed(random)
+        self._slices: list[tuple[str, int, int]] = []
+        first = 0
+        for ring in scene.robot.layout.rings:
+            self._slices.append((ring.name, first, first + len(ring.bearings)))
+            first += len(ring.bearings)
+        model = scene.model
+        self._motors = np.array([model.actuator(PREFIX + name).id for name in ACTUATORS])
+        self._limits: FloatArray = model.actuator_ctrlrange[self._motors]
+        self._begin(None)
+
+    def seed(self, random: int | np.random.SeedSequence | None) -> None:
+        """Start the sequence of episodes anew from a seed."""
+        is_sequence = isinstance(random, np.random.SeedSequence)
+        self._seed = random if is_sequence else np.random.SeedSequence(random)
+        self._episode = 0
+
+    def start_next_at(self, start: Start) -> None:
+        """Let the next episode start there (see `starts.resolve_start`), checked now."""
+        resolve_start(self.scene, start, np.random.default_rng(0))
+        self._start = start
+
+    def _begin(self, physics: NavigationPhysics | None) -> Pose:
+        """Set up the streams and sensors of an episode; place the robot if there is a physics."""
+        key = (*self._seed.spawn_key, self._episode)
+        streams = np.random.SeedSequence(self._seed.entropy, spawn_key=key).spawn(3)
+        choice, ranges, odometry = (np.random.default_rng(stream) for stream in streams)
+        start = resolve_start(self.scene, self._start, choice)
+        if physics is not None:
+            physics.place(start)
+            self._episode += 1
+            self._start = None
+        config, layout = self.config, self.scene.robot.layout
+        self._noise = RangeNoiseStream(config.range_noise, layout.count, ranges)
+        self._odometry = Odometry(start, config.odometry_noise, odometry)
+        self._observation: OrderedDict[str, FloatArray] | None = None
+        return start
+
+    def initialize_episode(self, physics: NavigationPhysics) -> None:
+        """Place the robot and reseed the sensors."""
+        self._begin(physics)
+
+    def before_step(self, action: Any, physics: NavigationPhysics) -> None:
+        """Command the motors: translate [m/s], steer [rad/s], turret [rad/s]."""
+        physics.data.ctrl[self._motors] = action
+        self._observation = None
+
+    def action_spec(self, physics: NavigationPhysics) -> specs.BoundedArray:
+        """Return the motors' limits, (3,)."""
+        low, high = self._limits.T
+        name = "\t".join(ACTUATORS)
+        return specs.BoundedArray((len(ACTUATORS),), np.float64, low, high, name=name)
+
+    def observation_spec(self, physics: NavigationPhysics) -> "OrderedDict[str, specs.Array]":
+        """Return the shapes and limits of the observations."""
+        robot = self.scene.robot
+        result: OrderedDict[str, specs.Array] = OrderedDict()
+        for ring in robot.layout.rings:
+            result[ring.name] = specs.BoundedArray(
+                (len(ring.bearings),), np.float64, ring.min_range, ring.max_range, name=ring.name
+            )
+        result["bumpers"] = specs.BoundedArray(
+            (len(robot.bumpers),), np.float64, 0.0, 1.0, name="bumpers"
+        )
+        for name, size in (("encoders", 3), ("odometry", 4), ("goal", 2)):
+            result[name] = specs.Array((size,), np.float64, name=name)
+        return result
+
+    def get_observation(self, physics: NavigationPhysics) -> "OrderedDict[str, FloatArray]":
+        """Return the readings of this control step, drawn once."""
+        if self._observation is None:
+            self._observation = self._sense(physics)
+        return self._observation.copy()
+
+    def _sense(self, physics: NavigationPhysics) -> "OrderedDict[str, FloatArray]":
+        rays = self.scene.robot.rays
+        ranges = physics.cone_ranges() * self._noise.factors()
+        np.minimum(np.maximum(ranges, rays.minimum, out=ranges), rays.maximum, out=ranges)
+        encoders = physics.encoders()
+        self._odometry.update(*encoders.tolist())
+        odometry = self._odometry.reading()
+        result = OrderedDict((name, ranges[a:b]) for name, a, b in self._slices)
+        result["bumpers"] = physics.bumpers()
+        result["encoders"] = encoders
+        result["odometry"] = odometry
+        result["goal"] = self.scene.arena.goal - odometry[:2]
+        return result
+
+    def goal_distance(self, physics: NavigationPhysics) -> float:
+        """Return the true distance from the robot's centre to the goal [m]."""
+        pose, goal = physics.pose(), self.scene.arena.goal
+        return float(np.hypot(goal[0] - pose.x, goal[1] - pose.y))
+
+    def get_reward(self, physics: NavigationPhysics) -> float:
+        """Return 1 at the goal, less the farther away, in [0, 1]."""
+        bounds = (0.0, self.config.goal_radius)
+        return float(rewards.tolerance(self.goal_distance(physics), bounds, margin=REWARD_MARGIN))
+
+    def get_termination(self, physics: NavigationPhysics) -> float | None:
+        """Return discount 0 at the goal, else None: the episode goes on."""
+        if self.config.ends_at_goal and self.goal_distance(physics) <= self.config.goal_radius:
+            return 0.0
+        return None

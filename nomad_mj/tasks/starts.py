@@ -1,0 +1,66 @@
+"""Where an episode starts: a start of the room's, or a pose of the user's that is checked."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+from typing_extensions import TypeAlias
+
+from nomad_mj.errors import StartError, UnknownNameError
+from nomad_mj.scene import Scene
+from nomad_mj.types import Pose
+
+Start: TypeAlias = "str | int | Sequence[float] | None"
+
+
+def resolve_start(scene: Scene, start: Start, rng: np.random.Generator) -> Pose:
+    """Return the pose that `start` means in a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its arena's starts and its floor plan.
+    start : str, int, sequence of float or None
+        The name or number of a start of the room's; ``(x, y)`` or ``(x, y, heading)`` in metres
+        and radians; None for one of the room's starts at random.
+    rng : numpy.random.Generator
+        Chooses among the starts.
+
+    Raises
+    ------
+    UnknownNameError
+        A name that no start has.
+    StartError
+        A number that no start has, a pose that is malformed, in an obstacle or cut off from the
+        goal.
+    """
+    arena = scene.arena
+    if start is None:
+        return Pose(*arena.starts[rng.integers(len(arena.starts))].tolist())
+    if isinstance(start, str):
+        if start not in arena.start_names:
+            raise UnknownNameError("start", start, arena.start_names)
+        return Pose(*arena.starts[arena.start_names.index(start)].tolist())
+    if isinstance(start, int | np.integer):
+        if not 0 <= start < len(arena.starts):
+            raise StartError(f"start {start}: the room's are numbered 0 to {len(arena.starts) - 1}")
+        return Pose(*arena.starts[start].tolist())
+    return _check(scene, start)
+
+
+def _check(scene: Scene, start: Sequence[float]) -> Pose:
+    values = np.asarray(start, dtype=np.float64)
+    if values.shape not in ((2,), (3,)) or not np.isfinite(values).all():
+        raise StartError(f"start {start}: must be (x, y) or (x, y, heading) in metres and radians")
+    pose = Pose(*values.tolist(), *([0.0] if len(values) == 2 else []))
+    radius = scene.robot.layout.radius
+    where = f"start ({pose.x:g}, {pose.y:g})"
+    clearance = float(scene.plan.clearance(values[:2], radius))
+    if clearance <= 0:
+        raise StartError(
+            f"{where} is inside {scene.plan.nearest_name(values[:2])!r} by {-clearance:.2f} m for a "
+            f"robot of radius {radius:g} m; the room spans {np.round(scene.plan.bounds, 2).tolist()}"
+        )
+    if not shapely.intersects_xy(scene.free_space, *values[:2]):
+        raise StartError(f"{where} is cut off from the goal for a robot of radius {radius:g} m")
+    return pose
