@@ -77,6 +77,8 @@ class FloorPlan:
 
     def describe_bounds(self) -> str:
         """Say where the floor is: what closed walls surround, else the rectangle `bounds`."""
+        if not self.footprints:
+            return "without bounds"
         rings = (ring for part in shapely.get_parts(self._union) for ring in part.interiors)
         enclosed = max((shapely.Polygon(ring) for ring in rings), key=shapely.area, default=None)
         x0, y0, x1, y1 = (enclosed or self._union).bounds
@@ -156,7 +158,8 @@ class FloorPlan:
             If the disc does not fit at the goal.
         """
         space = self.free_space(radius, goal)
-        return np.asarray(shapely.intersects_xy(space, np.asarray(xy, dtype=np.float64)))
+        places = np.asarray(xy, dtype=np.float64)
+        return np.asarray(shapely.intersects_xy(space, places[..., 0], places[..., 1]))
 
     def interior(self, radius: float, seed_point: npt.ArrayLike) -> BaseGeometry:
         """Return `free_space`, cut near the footprints where the room's walls do not close.

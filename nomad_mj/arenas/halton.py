@@ -1,9 +1,10 @@
 """Starts spread evenly over a room: how the start sites of the rooms in `models/arenas` were made.
 
-``python -m nomad_mj.arenas.starts ROOM.xml [COUNT]`` prints them as lines of MJCF.
+``python -m nomad_mj.arenas.halton ROOM.xml [COUNT]`` prints them as lines of MJCF.
 """
 
-import sys
+import argparse
+from collections.abc import Sequence
 
 import mujoco
 import numpy as np
@@ -12,7 +13,7 @@ import shapely
 from scipy.stats import qmc
 
 from nomad_mj.arenas.floor_plan import FloorPlan
-from nomad_mj.errors import StartError
+from nomad_mj.errors import NomadError, StartError
 from nomad_mj.types import FloatArray
 
 RADIUS = 0.265
@@ -75,14 +76,28 @@ def halton_starts(
     return points[keep][:n]
 
 
-def main(room: str, count: int) -> None:
-    """Print start sites for a room's file."""
-    model = mujoco.MjModel.from_xml_path(room)
-    goal = model.site("goal").pos[:2]
-    plan = FloorPlan.from_model(model, ROBOT_HEIGHT)
-    for i, (x, y) in enumerate(halton_starts(plan, count, goal)):
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print start sites for a room's file, whose goal is in it."""
+    parser = argparse.ArgumentParser(
+        prog="python -m nomad_mj.arenas.halton",
+        description="Print evenly spread start sites for a room.",
+        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+    )
+    parser.add_argument("room", help="MJCF file with a site called goal")
+    parser.add_argument("count", type=int, nargs="?", default=50, help="how many")
+    parser.add_argument("--radius", type=float, default=RADIUS, help="of the robot [m]")
+    options = parser.parse_args(arguments)
+    try:
+        model = mujoco.MjModel.from_xml_path(options.room)
+        goal = model.site("goal").pos[:2]
+        plan = FloorPlan.from_model(model, ROBOT_HEIGHT)
+        places = halton_starts(plan, options.count, goal, options.radius)
+    except (ValueError, KeyError, NomadError) as error:
+        reason = " ".join(str(error.args[0]).split())
+        parser.error(f"room {options.room!r}: {reason}")
+    for i, (x, y) in enumerate(places):
         print(f'    <site class="start" name="start_{i:02d}" pos="{x:.4f} {y:.4f} 0"/>')
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 50)
+    main()
