@@ -71,6 +71,7 @@ def _probe_egl() -> None:
     # Mesa writes about every device it may not open to standard error, at import.
     os.environ.setdefault("EGL_LOG_LEVEL", "fatal")
     egl = ctypes.CDLL("libEGL.so.1")
+    _check_opengl_library()
     pointer, integer = ctypes.c_void_p, ctypes.c_int
     query = _function(egl, "eglQueryDevicesEXT", integer, integer, pointer, pointer)
     display_of = _function(egl, "eglGetPlatformDisplayEXT", pointer, integer, pointer, pointer)
@@ -83,6 +84,19 @@ def _probe_egl() -> None:
         if display and initialise(display, None, None):
             return _try_egl_context(egl, display)
     _fail("no EGL device can be initialised")
+
+
+def _check_opengl_library() -> None:
+    """Check for the library PyOpenGL asks for errors after every call; libegl1 brings none."""
+    problems: list[OSError] = []
+    for name in ("libOpenGL.so.0", "libGL.so.1", "libGLESv2.so.2"):
+        try:
+            ctypes.CDLL(name)
+        except OSError as problem:  # noqa: PERF203
+            problems.append(problem)
+        else:
+            return
+    raise problems[0]
 
 
 def _egl_candidates(devices: list[int | None]) -> list[int | None]:

@@ -3,7 +3,7 @@
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import dm_env
 import numpy as np
@@ -41,13 +41,23 @@ class PathFindingConfig:
     motion: MotionConfig = field(default_factory=MotionConfig)
 
 
+class Move(NamedTuple):
+    """What became of a move: distances in metres, `ticks` control steps."""
+
+    outcome: Outcome
+    clearance: float
+    driven: float = 0.0
+    ticks: int = 0
+
+
 class PathFinding(dm_env.Environment):
     """Find the way to the goal, one move at a time.
 
     The action is (dx, dy) in [-1, 1] in the frame of the shortest path vector. A step lasts until
     the move is done, stopped by a virtual collision (the robot then retracts), bumped or timed
     out. Observations are those of the motor task after the move, and of the move itself:
-    ``duration`` [s], ``clearance`` [m], ``outcome`` (see `Outcome`). The reward is z of Eqs 6-8.
+    ``duration`` [s], ``driven`` (length of the way, there and back) [m], ``clearance`` (shortest
+    reading on the way) [m], ``outcome`` (see `Outcome`). The reward is z of Eqs 6-8.
     Reaching the goal ends the episode with discount 0, the time limit with discount 1.
 
     Parameters
@@ -104,6 +114,7 @@ class PathFinding(dm_env.Environment):
         result = OrderedDict(self.motor.observation_spec())
         limit = self.config.motion.time_out + 10.0
         result["duration"] = specs.BoundedArray((), np.float64, 0.0, limit, name="duration")
+        result["driven"] = specs.BoundedArray((), np.float64, 0.0, np.inf, name="driven")
         result["clearance"] = specs.BoundedArray((), np.float64, 0.0, np.inf, name="clearance")
         result["outcome"] = specs.DiscreteArray(len(Outcome), np.int64, name="outcome")
         return result
@@ -116,7 +127,7 @@ class PathFinding(dm_env.Environment):
         self._over = False
         self._ticks = 0
         self._read(self._inner.observation)
-        return dm_env.restart(self._observe(0.0, float(self._sense.min()), Outcome.NONE))
+        return dm_env.restart(self._observe(Move(Outcome.NONE, float(self._sense.min()))))
 
     def step(self, action: Any) -> dm_env.TimeStep:
         """Carry out one move and return what became of it."""
@@ -127,11 +138,11 @@ class PathFinding(dm_env.Environment):
             raise ValueError(f"action {action}: must be two finite numbers (dx, dy) in [-1, 1]")
         goal: FloatArray = self._inner.observation["goal"]
         move = displacement(np.clip(action, -1.0, 1.0), goal, self.config.action)
-        outcome, clearance, ticks = self._carry_out(move)
-        self._ticks += ticks
-        collided = outcome in (Outcome.VIRTUAL_COLLISION, Outcome.BUMPED)
-        reward = float(reinforcement(move, goal, clearance, collided))
-        observation = self._observe(ticks * CONTROL_TIMESTEP, clearance, outcome)
+        done = self._carry_out(move)
+        self._ticks += done.ticks
+        collided = done.outcome in (Outcome.VIRTUAL_COLLISION, Outcome.BUMPED)
+        reward = float(reinforcement(move, goal, done.clearance, collided))
+        observation = self._observe(done)
         task = self.motor.task
         if task.goal_distance(self.physics) <= task.config.goal_radius:
             self._over = True
@@ -141,8 +152,8 @@ class PathFinding(dm_env.Environment):
             return dm_env.truncation(reward, observation, 1.0)
         return dm_env.transition(reward, observation, 1.0)
 
-    def _carry_out(self, move: FloatArray) -> tuple[Outcome, float, int]:
-        """Drive a displacement (2,) [m]; return outcome, clearance [m] and control steps."""
+    def _carry_out(self, move: FloatArray) -> Move:
+        """Drive a displacement (2,) [m]."""
         x, y = move.tolist()
         wheels, turret = self._angles()
         heading = float(np.arctan2(y, x))
@@ -151,7 +162,7 @@ class PathFinding(dm_env.Environment):
             self.scene.robot.limits, self.config.motion, CONTROL_TIMESTEP,
         )
         watched, ahead = heading, self._ahead(heading, turret)
-        distance, bumped, clearance, ticks = 0.0, False, np.inf, 0
+        distance, bumped, driven, clearance, ticks = 0.0, False, 0.0, np.inf, 0
         while True:
             if drive.motion_heading != watched:
                 watched = drive.motion_heading
@@ -159,7 +170,7 @@ class PathFinding(dm_env.Environment):
             free = float(self._sense.take(ahead).min(initial=np.inf))
             speed, steer = drive.command(distance, wheels, free, bumped)
             if drive.done:
-                return drive.outcome, clearance, ticks
+                return Move(drive.outcome, clearance, driven, ticks)
             self._inner = self.motor.step((speed, steer, -_TURRET_GAIN * turret))
             observation = self._inner.observation
             self._read(observation)
@@ -167,6 +178,7 @@ class PathFinding(dm_env.Environment):
             bumped = bool(observation["bumpers"].any())
             wheels, turret = self._angles()
             clearance = min(clearance, float(self._sense.min()))
+            driven += abs(distance)
             ticks += 1
             if self.on_control_step is not None:
                 self.on_control_step(self._inner)
@@ -185,14 +197,13 @@ class PathFinding(dm_env.Environment):
         off = (self._bearings + turret - heading + np.pi) % (2 * np.pi) - np.pi
         return np.flatnonzero(np.abs(off) <= self.config.motion.ahead + 1e-9)
 
-    def _observe(
-        self, duration: float, clearance: float, outcome: Outcome
-    ) -> "OrderedDict[str, Any]":
+    def _observe(self, move: Move) -> "OrderedDict[str, Any]":
         assert self._inner is not None
         observation = OrderedDict(self._inner.observation)
-        observation["duration"] = np.array(duration)
-        observation["clearance"] = np.array(clearance)
-        observation["outcome"] = np.array(int(outcome))
+        observation["duration"] = np.array(move.ticks * CONTROL_TIMESTEP)
+        observation["driven"] = np.array(move.driven)
+        observation["clearance"] = np.array(move.clearance)
+        observation["outcome"] = np.array(int(move.outcome))
         return observation
 
     def close(self) -> None:

@@ -1,0 +1,1 @@
+"""Agents for nomad_mj, and what trains, evaluates and shows them."""

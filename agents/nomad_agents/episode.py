@@ -1,0 +1,139 @@
+"""One episode: an agent finds its way, or does not, and what it took."""
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+import dm_env
+import numpy as np
+
+from nomad_agents.agent import Agent, Decision
+from nomad_mj.envs import PathFinding
+from nomad_mj.motion import Outcome
+from nomad_mj.perception import Percept, SituationSpec, perceive
+from nomad_mj.tasks import Start
+from nomad_mj.types import FloatArray, SensorLayout
+
+
+class Episode(NamedTuple):
+    """What an episode took.
+
+    Attributes
+    ----------
+    reached : bool
+        Whether it ended at the goal.
+    decisions, reactions, unmatched : int
+        Moves made; those by a learnt reaction; situations unlike any exemplar.
+    virtual_collisions, bumper_contacts : int
+        Moves that ended so.
+    duration : float
+        Simulated time [s].
+    driven : float
+        Length of the way, retreats included [m].
+    clearance : float
+        Shortest reading of any range sensor [m].
+    """
+
+    reached: bool
+    decisions: int
+    reactions: int
+    unmatched: int
+    virtual_collisions: int
+    bumper_contacts: int
+    duration: float
+    driven: float
+    clearance: float
+
+    @property
+    def strict(self) -> bool:
+        """Whether the goal was reached without a virtual collision or a contact."""
+        return self.reached and self.virtual_collisions + self.bumper_contacts == 0
+
+
+class Turn(NamedTuple):
+    """A decision and what came of it, for those who look on."""
+
+    percept: Percept
+    decision: Decision
+    after: dm_env.TimeStep | None
+
+
+Watcher = Callable[[Turn], None]
+
+
+def percept_of(
+    observation: Mapping[str, FloatArray], layout: SensorLayout, spec: SituationSpec
+) -> Percept:
+    """Return the percept of an observation of path finding or of the motor task."""
+    ranges = np.concatenate([observation[ring.name] for ring in layout.rings])
+    return perceive(ranges, observation["odometry"][3], observation["goal"], layout, spec)
+
+
+def run_episode(
+    env: PathFinding,
+    agent: Agent,
+    *,
+    seed: int | np.random.SeedSequence | None = None,
+    start: Start = None,
+    explore: np.random.Generator | None = None,
+    max_decisions: int = 100,
+    watch: Watcher | None = None,
+) -> Episode:
+    """Let an agent act until it reaches the goal, knows no further or runs out of time.
+
+    Parameters
+    ----------
+    env, agent
+        Of the same robot.
+    seed, start
+        As of `PathFinding.reset`.
+    explore : numpy.random.Generator, optional
+        Stream of exploration: the agent learns. Without it the agent is greedy and unchanged.
+    max_decisions : int
+        The episode is given up after so many.
+    watch : callable, optional
+        Called with each decision before the move (`after` None) and after it.
+    """
+    step = env.reset(seed, start)
+    agent.start_episode()
+    percept = percept_of(step.observation, agent.layout, agent.situation)
+    counts = dict.fromkeys(("decisions", "reactions", "unmatched"), 0)
+    outcomes: list[int] = []
+    duration = driven = 0.0
+    clearance = float(step.observation["clearance"])
+    reached = False
+    while not step.last() and counts["decisions"] < max_decisions:
+        decision = agent.act(percept, explore)
+        counts["unmatched"] += decision.kind == "unmatched"
+        if decision.kind == "unmatched" and decision.category < 0:
+            break  # the agent does not know how to act
+        if watch is not None:
+            watch(Turn(percept, decision, None))
+        step = env.step(decision.action)
+        if watch is not None:
+            watch(Turn(percept, decision, step))
+        seen = step.observation
+        counts["decisions"] += 1
+        counts["reactions"] += decision.kind != "planned"
+        outcomes.append(int(seen["outcome"]))
+        duration += float(seen["duration"])
+        driven += float(seen["driven"])
+        clearance = min(clearance, float(seen["clearance"]))
+        reached = step.last() and step.discount == 0.0
+        after = percept_of(seen, agent.layout, agent.situation)
+        if explore is not None and reached:
+            agent.reach_goal(percept, decision, float(step.reward))
+        elif explore is not None:
+            collided = outcomes[-1] in (Outcome.VIRTUAL_COLLISION, Outcome.BUMPED)
+            agent.learn(percept, decision, float(step.reward), collided, after)
+        percept = after
+    return Episode(
+        reached,
+        counts["decisions"],
+        counts["reactions"],
+        counts["unmatched"],
+        outcomes.count(Outcome.VIRTUAL_COLLISION),
+        outcomes.count(Outcome.BUMPED),
+        duration,
+        driven,
+        clearance,
+    )
