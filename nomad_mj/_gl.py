@@ -23,7 +23,11 @@ _WORDS = {
     "glfw": ("glfw", "on", "enable", "enabled", "true", "1"),
     "off": ("off", "disable", "disabled", "false", "0"),
 }
-INSTALL = "sudo apt-get install -y libegl1 libgl1 libgl1-mesa-dri libosmesa6"
+# libegl1 alone lacks the software driver, and the library PyOpenGL asks for errors.
+_INSTALL = {
+    "egl": "sudo apt-get install -y libegl1 libopengl0 libgl1-mesa-dri",
+    "osmesa": "sudo apt-get install -y libosmesa6",
+}
 
 
 class Attempt(NamedTuple):
@@ -55,11 +59,15 @@ class GLReport(NamedTuple):
             return f"OpenGL: {self.backend}"
         if not self.attempts:
             return f"pictures are switched off by MUJOCO_GL={self.asked!r}; unset it to draw"
-        if self.asked == self.attempts[0].backend not in _WORDS:
-            return f"MUJOCO_GL={self.asked!r}: {self.attempts[0].problem}"
         tried = "; ".join(f"{name}: {problem}" for name, problem in self.attempts)
+        if self.asked is None:
+            hint = f"on Debian or Ubuntu type: {_INSTALL['egl']}"
+        elif self.attempts[0].backend in _INSTALL:
+            hint = f"on Debian or Ubuntu type: {_INSTALL[self.attempts[0].backend]}"
+        else:
+            hint = "unset MUJOCO_GL"
         asked = f" with MUJOCO_GL={self.asked!r}" if self.asked else ""
-        return f"no OpenGL works here{asked} ({tried}); on Debian or Ubuntu type: {INSTALL}"
+        return f"no OpenGL works here{asked} ({tried}); {hint}"
 
 
 def choose_backend() -> str:

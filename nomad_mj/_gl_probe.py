@@ -33,7 +33,7 @@ def problem_with(backend: str) -> str | None:
     probes = {"egl": _probe_egl, "osmesa": _probe_osmesa, "glfw": _probe_glfw}
     try:
         if backend not in probes:
-            _fail("no such backend; there are: egl, osmesa, glfw, off; or leave it unset")
+            _fail("no such backend; there are egl, osmesa, glfw and off")
         if backend != "glfw":
             _check_pyopengl(backend)
         probes[backend]()
