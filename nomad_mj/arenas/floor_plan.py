@@ -18,6 +18,7 @@ OPEN_ROOM_MARGIN = 10.0
 """How far around everything a room without closed walls is taken to reach [m]."""
 
 _QUAD_SEGS = 8
+_THINNEST = 1e-6
 _BATCH = 256
 _MOST_BATCHES = 400
 
@@ -133,7 +134,9 @@ class FloorPlan:
         """
         seed = shapely.Point(np.asarray(seed_point, dtype=np.float64))
         domain = self._around(seed_point, OPEN_ROOM_MARGIN)
-        blocked = shapely.buffer(self._union, radius, quad_segs=_QUAD_SEGS)
+        # GEOS loses whole polygons when it buffers them by next to nothing.
+        thick = radius if radius >= _THINNEST else 0.0
+        blocked = shapely.buffer(self._union, thick, quad_segs=_QUAD_SEGS)
         for part in shapely.get_parts(shapely.difference(domain, blocked)):
             if shapely.intersects(part, seed):
                 return part

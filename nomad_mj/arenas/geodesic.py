@@ -41,8 +41,9 @@ class Geodesic:
     def __init__(self, plan: FloorPlan, goal: npt.ArrayLike, radius: float) -> None:
         self.goal = np.asarray(goal, dtype=np.float64)
         self.radius = radius
-        self._corners, self._before, self._after = _corners(plan.free_space(radius, self.goal))
-        self._space = plan.free_space(max(radius - _SLACK, 0.0), self.goal)
+        space = plan.free_space(radius, self.goal)
+        self._corners, self._before, self._after = _corners(space)
+        self._space = shapely.buffer(space, _SLACK, join_style="mitre")
         shapely.prepare(self._space)
         self._distance, self._next = self._to_goal()
 
@@ -140,7 +141,9 @@ class Geodesic:
 
 def _corners(space: shapely.Polygon) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the corners a path can bend around (V, 2), and the way to their two neighbours."""
-    oriented = orient(space)  # the free space lies to the left of every ring
+    # Points that all but coincide give their edges directions that mean nothing.
+    clean = shapely.remove_repeated_points(space, _SLACK / 10)
+    oriented = orient(clean)  # the free space lies to the left of every ring
     corners: list[FloatArray] = []
     before: list[FloatArray] = []
     after: list[FloatArray] = []
