@@ -96,8 +96,7 @@ def robot(request: pytest.FixtureRequest) -> str:
 
 def test_has_the_names_that_controllers_rely_on(robot: str) -> None:
     model = in_scene(robot)
-    assert model.nu == 3
-    assert [model.actuator(i).name for i in range(3)] == [f"robot/{n}" for n in LIMITS]
+    assert [model.actuator(i).name for i in range(model.nu)] == [f"robot/{n}" for n in LIMITS]
     expected = [f"robot/bumper_{i}" for i in range(20)]
     expected += [f"robot/{motor}_encoder" for motor in LIMITS]
     for ring, (rays, *_) in RINGS.items():
@@ -181,14 +180,14 @@ def test_a_light_touch_is_still_known_at_the_end_of_the_control_step(robot: str)
     nomad.move_obstacle(5, 0)
     mujoco.mj_step(nomad.model, nomad.data, 9)
     assert nomad.bumpers().max() == 0
-    start = nomad.model.sensor_historyadr[nomad.model.sensor("robot/bumper_0").id]
-    assert nomad.data.history[start + 12 : start + 22].max() > 0
+    values = nomad.model.sensor_historyadr[nomad.model.sensor("robot/bumper_0").id] + 12
+    assert nomad.data.history[values : values + 10].max() > 0
 
 
 def test_a_wall_stops_it(robot: str) -> None:
     nomad = Nomad(robot, "wall")
     nomad.move_obstacle(1.1, 0)
-    inside: list[float] = []
+    inside = [0.0]
     for _ in range(80):
         nomad.control_step(LIMITS["translate"], 0, 0)
         inside.append(nomad.data.qpos[nomad.joints[0]] + RADIUS - 1)
