@@ -74,9 +74,10 @@ def _ring(
         bearings.append(axis)
         spread = max(spread, float(np.abs(np.angle(np.exp(1j * (angles - axis)))).max()))
     cutoff = float(model.sensor_cutoff[next(iter(cones.values()))[0]])
-    if spread == 0.0:  # single rays: each speaks for the space up to its neighbours
-        gaps = np.diff(np.sort(bearings)) if len(bearings) > 1 else np.array([np.pi / 6])
-        spread = float(max(gaps.min() / 2, 1e-3))
+    if spread < 1e-6:  # single rays, but for rounding: each speaks for the space up to the next
+        around = np.sort(bearings)
+        gaps = np.diff(around, append=around[0] + 2 * np.pi)
+        spread = float(max(gaps.min() / 2, 1e-3)) if len(bearings) > 1 else np.pi / 12
     return RangeRing(name, tuple(bearings), spread, minimum, cutoff if cutoff > 0 else 10.0)
 
 
@@ -101,7 +102,7 @@ def index_rays(
     """
     found = np.flatnonzero(model.sensor_type == mujoco.mjtSensor.mjSENS_RANGEFINDER)
     sensors = [int(i) for i in found if model.sensor(int(i)).name.startswith(PREFIX)]
-    names = [model.sensor(i).name for i in sensors]
+    names = [model.sensor(i).name.removeprefix(PREFIX) for i in sensors]
     address: list[int] = []
     first: list[int] = []
     rows: list[tuple[float, float, float]] = []
