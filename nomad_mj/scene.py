@@ -60,6 +60,7 @@ def _sample_per_control_step(spec: mujoco.MjSpec, sub_steps: int) -> None:
     for sensor in spec.sensors:
         if sensor.type == mujoco.mjtSensor.mjSENS_RANGEFINDER:
             sensor.interval = [CONTROL_TIMESTEP, 0.0]
+            sensor.nsample = max(sensor.nsample, 1)  # without a sample kept there is no interval
         elif sensor.type == mujoco.mjtSensor.mjSENS_TOUCH or sensor.name == (
             PREFIX + "translate_encoder"
         ):

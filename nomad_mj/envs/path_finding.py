@@ -116,7 +116,7 @@ class PathFinding(dm_env.Environment):
         result["duration"] = specs.BoundedArray((), np.float64, 0.0, limit, name="duration")
         result["driven"] = specs.BoundedArray((), np.float64, 0.0, np.inf, name="driven")
         result["clearance"] = specs.BoundedArray((), np.float64, 0.0, np.inf, name="clearance")
-        result["outcome"] = specs.DiscreteArray(len(Outcome), np.int64, name="outcome")
+        result["outcome"] = specs.DiscreteArray(len(Outcome), np.int32, name="outcome")
         return result
 
     def reset(
@@ -158,8 +158,12 @@ class PathFinding(dm_env.Environment):
         wheels, turret = self._angles()
         heading = float(np.arctan2(y, x))
         drive = SynchroMove(
-            heading, float(np.hypot(x, y)), wheels,
-            self.scene.robot.limits, self.config.motion, CONTROL_TIMESTEP,
+            heading,
+            float(np.hypot(x, y)),
+            wheels,
+            self.scene.robot.limits,
+            self.config.motion,
+            CONTROL_TIMESTEP,
         )
         watched, ahead = heading, self._ahead(heading, turret)
         distance, bumped, driven, clearance, ticks = 0.0, False, 0.0, np.inf, 0
@@ -203,7 +207,7 @@ class PathFinding(dm_env.Environment):
         observation["duration"] = np.array(move.ticks * CONTROL_TIMESTEP)
         observation["driven"] = np.array(move.driven)
         observation["clearance"] = np.array(move.clearance)
-        observation["outcome"] = np.array(int(move.outcome))
+        observation["outcome"] = np.array(int(move.outcome), dtype=np.int32)
         return observation
 
     def close(self) -> None:

@@ -27,7 +27,7 @@ class MotionConfig:
     ahead : float
         Half the angle that counts as ahead [rad].
     retract : float
-        How far the robot backs off after a virtual collision [m], at most to the move's start.
+        How far the robot backs off after a virtual collision [m], if there is room behind it.
     braking : float
         Share of the largest deceleration that the robot counts on.
     creep : float
@@ -154,8 +154,7 @@ class SynchroMove:
                 self._end(Outcome.MOVED)
         elif self._phase is _Phase.RETRACT:
             left = self._travelled - self._to_retract
-            # What came up from behind meanwhile ends the retreat; the way itself was free.
-            if left <= _ARRIVED or free < self._config.security_distance / 2:
+            if left <= _ARRIVED or free < self._config.security_distance + _ARRIVED:
                 self._phase = _Phase.STOP
         if self._elapsed >= self._config.time_out and self._phase is not _Phase.STOP:
             if self.outcome is Outcome.NONE:
@@ -167,9 +166,9 @@ class SynchroMove:
     def _end(self, outcome: Outcome) -> None:
         self.outcome = outcome
         self._phase = _Phase.STOP
-        if outcome is not Outcome.MOVED and self._travelled > _ARRIVED:
+        if outcome is not Outcome.MOVED:
             self._phase = _Phase.RETRACT
-            self._to_retract = max(self._travelled - self._config.retract, 0.0)
+            self._to_retract = self._travelled - self._config.retract
             self.motion_heading += math.pi
 
     def _steer(self, error: float) -> float:
@@ -196,7 +195,11 @@ class SynchroMove:
             )
         elif self._phase is _Phase.RETRACT:
             left = self._travelled - self._to_retract
-            wanted = -ramp_speed(left, limits.translate, braking, dt)
+            margin = free - config.security_distance - abs(distance)
+            wanted = -min(
+                ramp_speed(left, limits.translate, braking, dt),
+                ramp_speed(margin, limits.translate, braking, dt),
+            )
         change = limits.translate_acceleration * dt
         self._speed += min(max(wanted - self._speed, -change), change)
         return self._sign * self._speed

@@ -55,7 +55,7 @@ class _Tables(NamedTuple):
 
 def cell_centres(spec: GridSpec) -> FloatArray:
     """Return the cells' centres (cells, cells, 2) [m], from the robot; rows run along y."""
-    axis = (np.arange(spec.cells) - spec.cells // 2) * spec.resolution
+    axis = (np.arange(spec.cells, dtype=np.float64) - spec.cells // 2) * spec.resolution
     return np.stack(np.meshgrid(axis, axis), axis=-1)
 
 

@@ -42,7 +42,9 @@ class RobotDescription:
     rays: RayIndex
 
 
-def _require(model: mujoco.MjModel, robot: str, kind: mujoco.mjtObj, names: tuple[str, ...]) -> None:
+def _require(
+    model: mujoco.MjModel, robot: str, kind: mujoco.mjtObj, names: tuple[str, ...]
+) -> None:
     """Raise a ModelError that names the missing elements and lists those that there are."""
     missing = [n for n in names if mujoco.mj_name2id(model, kind, PREFIX + n) < 0]
     if not missing:
@@ -59,7 +61,10 @@ def _number(model: mujoco.MjModel, robot: str, name: str, default: float | None 
     """Return the custom numeric `name` of the robot."""
     index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_NUMERIC, PREFIX + name)
     if index >= 0:
-        return float(model.numeric_data[model.numeric_adr[index]])
+        value = float(model.numeric_data[model.numeric_adr[index]])
+        if not (value > 0 or value == default):
+            raise ModelError(f"robot {robot!r}: its {name} is {value:g}; it must be above 0")
+        return value
     if default is None:
         raise ModelError(
             f"robot {robot!r} lacks its {name}: add <custom><numeric name={name!r} data=.../>"
@@ -89,7 +94,9 @@ def _limits(model: mujoco.MjModel, robot: str) -> MotionLimits:
 
 def robot_geoms(model: mujoco.MjModel) -> list[int]:
     """Return the indices of the robot's geoms, those that collide and those that only show."""
-    names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, i) or "" for i in range(model.nbody)]
+    names = [
+        mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, i) or "" for i in range(model.nbody)
+    ]
     own = np.array([name.startswith(PREFIX) for name in names])
     return [int(i) for i in np.flatnonzero(own[model.geom_bodyid])]
 
@@ -113,12 +120,16 @@ def describe_robot(model: mujoco.MjModel, name: str) -> RobotDescription:
     Raises
     ------
     ModelError
-        An actuator, joint, encoder, range sensor or number that is missing: names it and lists
-        what there is.
+        An actuator, joint, encoder, range sensor or number that is missing or makes no sense:
+        names it and lists what there is or says what it must be.
     """
     _require(model, name, mujoco.mjtObj.mjOBJ_ACTUATOR, ACTUATORS)
     _require(model, name, mujoco.mjtObj.mjOBJ_JOINT, JOINTS)
     _require(model, name, mujoco.mjtObj.mjOBJ_SENSOR, ENCODERS)
+    for joint in JOINTS:
+        kind = "slide" if joint.startswith("base_") else "hinge"
+        if model.joint(PREFIX + joint).type[0] != getattr(mujoco.mjtJoint, f"mjJNT_{kind.upper()}"):
+            raise ModelError(f"robot {name!r}: joint {joint!r} must be a {kind}")
     radius = _number(model, name, "radius")
     rays, rings = index_rays(model, name, radius, lambda key: _number(model, name, key, 0.0))
     touch = np.flatnonzero(model.sensor_type == mujoco.mjtSensor.mjSENS_TOUCH)

@@ -37,9 +37,7 @@ def set_rays_per_cone(spec: mujoco.MjSpec, rays: int) -> None:
             _refan(spec, model, [s.name for s in old], f"{ring}_{{}}_{cone:02d}", rays)
 
 
-def _refan(
-    spec: mujoco.MjSpec, model: mujoco.MjModel, old: list[str], new: str, rays: int
-) -> None:
+def _refan(spec: mujoco.MjSpec, model: mujoco.MjModel, old: list[str], new: str, rays: int) -> None:
     """Replace the rays called `old` by `rays` of them over the same opening."""
     template = next(s for s in spec.sensors if s.name == old[0])
     kept = (template.cutoff, template.interval, list(template.intprm))
@@ -55,8 +53,10 @@ def _refan(
         name = new.format(ray)
         body.add_site(name=name, pos=position, quat=_between(quats[0], quats[1], share))
         sensor = spec.add_sensor(
-            name=name, type=mujoco.mjtSensor.mjSENS_RANGEFINDER,
-            objtype=mujoco.mjtObj.mjOBJ_SITE, objname=name,
+            name=name,
+            type=mujoco.mjtSensor.mjSENS_RANGEFINDER,
+            objtype=mujoco.mjtObj.mjOBJ_SITE,
+            objname=name,
         )
         sensor.cutoff, sensor.interval, sensor.intprm = kept
 

@@ -110,6 +110,11 @@ def index_rays(
     for ring_name, cones in group_rays(names).items():
         cones = {cone: [sensors[p] for p in rays] for cone, rays in cones.items()}
         ring = _ring(model, ring_name, cones, number(f"{ring_name}_min_range"))
+        if ring.min_range >= ring.max_range:
+            raise ModelError(
+                f"robot {robot!r}: {ring_name}_min_range {ring.min_range:g} m must be below the "
+                f"cutoff of its rangefinders, {ring.max_range:g} m"
+            )
         rings.append(ring)
         for rays in cones.values():
             first.append(len(address))

@@ -55,7 +55,10 @@ class NavigationPhysics(Physics):
         self._speed = _history(model, [int(model.sensor(PREFIX + "translate_encoder").id)])
         self._timestep = float(model.opt.timestep)
         self._angles = np.array(
-            [int(model.sensor(PREFIX + name).adr[0]) for name in ("steer_encoder", "turret_encoder")]
+            [
+                int(model.sensor(PREFIX + name).adr[0])
+                for name in ("steer_encoder", "turret_encoder")
+            ]
         )
 
     def reset(self, keyframe_id: int | None = None) -> None:
@@ -120,4 +123,7 @@ def _history(model: mujoco.MjModel, sensors: list[int]) -> IntArray:
     """
     samples = int(model.sensor_history[sensors[0], 0]) if sensors else 0
     values = np.arange(2 + samples, 2 + 2 * samples)
-    return np.array([int(model.sensor_historyadr[s]) for s in sensors], dtype=np.intp)[:, None] + values
+    return (
+        np.array([int(model.sensor_historyadr[s]) for s in sensors], dtype=np.intp)[:, None]
+        + values
+    )

@@ -1,10 +1,10 @@
 """Where an episode starts: a start of the room's, or a pose of the user's that is checked."""
 
 from collections.abc import Sequence
+from typing import TypeAlias
 
 import numpy as np
 import shapely
-from typing_extensions import TypeAlias
 
 from nomad_mj.errors import StartError, UnknownNameError
 from nomad_mj.scene import Scene
@@ -58,8 +58,8 @@ def _check(scene: Scene, start: Sequence[float]) -> Pose:
     clearance = float(scene.plan.clearance(values[:2], radius))
     if clearance <= 0:
         raise StartError(
-            f"{where} is inside {scene.plan.nearest_name(values[:2])!r} by {-clearance:.2f} m for a "
-            f"robot of radius {radius:g} m; the room spans {np.round(scene.plan.bounds, 2).tolist()}"
+            f"{where} is {-clearance:.2f} m inside {scene.plan.nearest_name(values[:2])!r} for a "
+            f"robot of radius {radius:g} m; the floor is {scene.plan.describe_bounds()}"
         )
     if not shapely.intersects_xy(scene.free_space, *values[:2]):
         raise StartError(f"{where} is cut off from the goal for a robot of radius {radius:g} m")

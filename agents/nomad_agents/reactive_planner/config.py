@@ -24,6 +24,8 @@ class PlannerConfig:
         Half the angle around the goal's direction in which cells repel [rad].
     occupied : float
         From this probability on a cell bars the way.
+    margin : float
+        Half a cell [m]: what the grid shows can be so much nearer than the cell's centre.
     """
 
     k_length: float = 0.75
@@ -31,6 +33,7 @@ class PlannerConfig:
     k_clear: float = 0.1
     k_alpha: float = math.radians(45)
     occupied: float = 0.5
+    margin: float = 0.15
 
 
 @dataclass(frozen=True)

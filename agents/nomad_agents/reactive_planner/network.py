@@ -3,6 +3,7 @@
 A module is one category and its exemplars. Both are made on demand and kept in growing arrays.
 """
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -77,10 +78,44 @@ class Network:
         self.weights: FloatArray = store["weights"][:e]
         self.category: IntArray = store["category"][:e]
 
+    def arrays(self) -> dict[str, np.ndarray]:
+        """Return copies of all that has been learnt, by name."""
+        return {name: getattr(self, name).copy() for name in CATEGORY_FIELDS + EXEMPLAR_FIELDS}
+
+    def restore(self, arrays: Mapping[str, np.ndarray]) -> None:
+        """Take over what `arrays` returned of another network of the same size.
+
+        Raises
+        ------
+        ValueError
+            An array that is missing, of another shape or kind, or refers to no category.
+        """
+        for name in CATEGORY_FIELDS + EXEMPLAR_FIELDS:
+            if name not in arrays:
+                raise ValueError(f"it lacks the array {name!r}")
+        categories, exemplars = len(arrays["value"]), len(arrays["category"])
+        store: dict[str, np.ndarray] = {}
+        for names, count in ((CATEGORY_FIELDS, categories), (EXEMPLAR_FIELDS, exemplars)):
+            for name in names:
+                own, array = self._store[name], arrays[name]
+                if array.shape != (count, *own.shape[1:]) or array.dtype != own.dtype:
+                    raise ValueError(f"array {name!r} has shape {array.shape}, type {array.dtype}")
+                if not np.isfinite(array).all():
+                    raise ValueError(f"array {name!r} holds numbers that are not finite")
+                room = max(count, _FIRST_CAPACITY)
+                store[name] = np.zeros((room, *own.shape[1:]), dtype=own.dtype)
+                store[name][:count] = array
+        owners = arrays["category"]
+        if exemplars and not (0 <= owners.min() and owners.max() < categories):
+            raise ValueError("an exemplar belongs to no category")
+        self._store, self._categories, self._exemplars = store, categories, exemplars
+        self._refresh()
+
     def _make_room(self, names: tuple[str, ...], used: int) -> None:
         for name in names:
             if used == len(self._store[name]):
-                self._store[name] = np.concatenate([self._store[name]] * 2)
+                old = self._store[name]
+                self._store[name] = np.concatenate([old, np.zeros_like(old)])
 
     def add_category(self, prototype: FloatArray, value: float) -> int:
         """Return the number of a new category with this prototypical action (2,) and value."""

@@ -81,7 +81,8 @@ def path_clearance(
     x = cells[:, 0] - share * moves[:, :1]
     y = cells[:, 1] - share * moves[:, 1:]
     nearest = np.sqrt((x * x + y * y).min(axis=1))
-    return nearest - radius, float(np.hypot(cells[:, 0], cells[:, 1]).min()) - radius
+    reach = radius + config.margin
+    return nearest - reach, float(np.hypot(cells[:, 0], cells[:, 1]).min()) - reach
 
 
 def plan(

@@ -1,0 +1,58 @@
+"""Agents by name, and configurations by name."""
+
+from pathlib import Path
+
+from nomad_agents.agent import Agent
+from nomad_agents.baselines import Planner, Straight
+from nomad_agents.checkpoint import load_checkpoint
+from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner, ReactivePlannerConfig
+from nomad_mj.errors import CheckpointError, UnknownNameError
+from nomad_mj.types import SensorLayout
+
+AGENTS: dict[str, type[ReactivePlanner] | type[Planner] | type[Straight]] = {
+    agent.name: agent for agent in (ReactivePlanner, Planner, Straight)
+}
+
+
+def find_config(name: str) -> ReactivePlannerConfig:
+    """Return the configuration of a name; raise UnknownNameError if there is none."""
+    if name not in CONFIGS:
+        raise UnknownNameError("configuration", name, CONFIGS)
+    return CONFIGS[name]
+
+
+def make_agent(name: str, layout: SensorLayout, config: ReactivePlannerConfig) -> Agent:
+    """Return a new agent that has learnt nothing; raise UnknownNameError for an unknown name."""
+    if name not in AGENTS:
+        raise UnknownNameError("agent", name, AGENTS)
+    return AGENTS[name](layout, config)
+
+
+def find_agent(name_or_path: str, layout: SensorLayout, config: ReactivePlannerConfig) -> Agent:
+    """Return a new agent of a name, or the one that a checkpoint file holds.
+
+    Raises
+    ------
+    UnknownNameError
+        Neither an agent nor a file that exists.
+    CheckpointError
+        A file that is no checkpoint, or one for other sensors.
+    """
+    if name_or_path in AGENTS:
+        return make_agent(name_or_path, layout, config)
+    path = Path(name_or_path).expanduser()
+    if path.suffix != ".npz" and not path.exists():
+        raise UnknownNameError("agent", name_or_path, [*AGENTS, "a checkpoint file, .npz"])
+    checkpoint = load_checkpoint(path)
+    if checkpoint.layout != layout:
+        raise CheckpointError(
+            f"checkpoint {name_or_path!r} is for other sensors: {describe_layout(checkpoint.layout)}; "
+            f"this robot has {describe_layout(layout)}"
+        )
+    return checkpoint.agent
+
+
+def describe_layout(layout: SensorLayout) -> str:
+    """Return a robot's sensors in words."""
+    rings = ", ".join(f"{len(r.bearings)} {r.name} to {r.max_range:g} m" for r in layout.rings)
+    return f"{rings}, radius {layout.radius:g} m"

@@ -1,0 +1,123 @@
+"""Cameras: those of the room and of the robot, and computed ones where a file has none."""
+
+import math
+
+import mujoco
+import numpy as np
+
+from nomad_mj.robots import JOINTS, PREFIX
+from nomad_mj.scene import ROOM_PREFIX, Scene
+from nomad_mj.types import FloatArray
+
+_DISTANCE = 3.1  # [m] from the chase camera to what it looks at
+_AHEAD = 0.45  # [m] before the robot that it looks at
+_HEIGHT = 0.35  # [m] above the floor that it looks at
+_CLIMBS = (36.0, 42.0, 48.0, 54.0, 60.0, 66.0, 72.0)  # [deg] above the horizon
+_SWING = 2.2  # [rad/s] of a critically damped swing
+_RISE = 1.6  # [1/s] with which it climbs over walls
+
+
+def _free_camera() -> mujoco.MjvCamera:
+    camera = mujoco.MjvCamera()
+    camera.type = mujoco.mjtCamera.mjCAMERA_FREE
+    return camera
+
+
+def _room_camera(scene: Scene, elevation: float) -> mujoco.MjvCamera:
+    """Return a camera that sees the whole floor plan from `elevation` [deg] above the horizon."""
+    x0, y0, x1, y1 = scene.plan.bounds
+    if not np.isfinite(x0):  # nothing stands in the room
+        places = np.concatenate([scene.arena.starts[:, :2], scene.arena.goal[None]])
+        (x0, y0), (x1, y1) = places.min(axis=0) - 1.0, places.max(axis=0) + 1.0
+    camera = _free_camera()
+    camera.lookat = np.array([(x0 + x1) / 2, (y0 + y1) / 2, 0.0])
+    camera.azimuth, camera.elevation = 90.0, -elevation
+    tangent = math.tan(math.radians(float(scene.model.vis.global_.fovy)) / 2)
+    climb = math.radians(elevation)
+    half_x, half_y = (x1 - x0) / 2, (y1 - y0) / 2
+    # The near edge of the floor is closer to the camera, and so looks larger.
+    along = half_y * math.sin(climb) / tangent + half_y * math.cos(climb)
+    across = half_x / tangent + half_y * math.cos(climb)
+    camera.distance = 1.06 * max(along, across)
+    return camera
+
+
+def fixed_camera(scene: Scene, name: str) -> mujoco.MjvCamera:
+    """Return the room's camera `name`, "top" or "overview", or one that sees the whole room."""
+    kind = mujoco.mjtObj.mjOBJ_CAMERA
+    index = int(mujoco.mj_name2id(scene.model, kind, ROOM_PREFIX + name))
+    if index < 0:
+        return _room_camera(scene, 90.0 if name == "top" else 55.0)
+    camera = mujoco.MjvCamera()
+    camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
+    camera.fixedcamid = index
+    return camera
+
+
+def base_body(model: mujoco.MjModel) -> int:
+    """Return the body that the robot's base joints move."""
+    return int(model.jnt_bodyid[model.joint(PREFIX + JOINTS[0]).id])
+
+
+class ChaseCamera:
+    """Follows behind the robot's course, swings gently, and rises over walls in its way.
+
+    Parameters
+    ----------
+    scene : Scene
+        Robot and room.
+
+    Attributes
+    ----------
+    camera : mujoco.MjvCamera
+        To draw with.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self._model = scene.model
+        self._start = scene.robot.layout.radius + 0.05
+        self.camera = _free_camera()
+        self.camera.distance = _DISTANCE
+        self._base = base_body(scene.model)
+        self._azimuth = self._speed = 0.0
+        self._climb = math.radians(_CLIMBS[0])
+
+    def cut(self, data: mujoco.MjData, course: float) -> None:
+        """Jump behind the robot, which is about to drive along `course` [rad]."""
+        self._azimuth, self._speed = course, 0.0
+        self._climb = self._free_climb(data)
+        self._aim(data)
+
+    def follow(self, data: mujoco.MjData, course: float, elapsed: float) -> None:
+        """Move on by `elapsed` seconds of the video."""
+        error = math.remainder(course - self._azimuth, 2 * math.pi)
+        # Exact for a critically damped spring whose target rests: never overshoots, any step.
+        decay = math.exp(-_SWING * elapsed)
+        rate = self._speed - _SWING * error
+        error, self._speed = (
+            (error - rate * elapsed) * decay,
+            (self._speed - rate * _SWING * elapsed) * decay,
+        )
+        self._azimuth = course - error
+        share = 1 - math.exp(-_RISE * elapsed)
+        self._climb += share * (self._free_climb(data) - self._climb)
+        self._aim(data)
+
+    def _free_climb(self, data: mujoco.MjData) -> float:
+        """Return the lowest elevation [rad] from which no wall hides the robot."""
+        back = np.array([-math.cos(self._azimuth), -math.sin(self._azimuth)])
+        base: FloatArray = data.xpos[self._base]
+        start = np.array([*(base[:2] + self._start * back), 0.25])
+        hit = np.zeros(1, dtype=np.int32)
+        for climb in map(math.radians, _CLIMBS):
+            ray = np.array([*(back * math.cos(climb)), math.sin(climb)])
+            met = mujoco.mj_ray(self._model, data, start, ray, None, 1, -1, hit)
+            if met < 0 or met > _DISTANCE:
+                return climb
+        return math.radians(_CLIMBS[-1])
+
+    def _aim(self, data: mujoco.MjData) -> None:
+        ahead = _AHEAD * np.array([math.cos(self._azimuth), math.sin(self._azimuth)])
+        self.camera.lookat = np.array([*(data.xpos[self._base][:2] + ahead), _HEIGHT])
+        self.camera.azimuth = math.degrees(self._azimuth)
+        self.camera.elevation = -math.degrees(self._climb)
