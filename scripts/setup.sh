@@ -86,7 +86,10 @@ make_venv() {
   local python
   python=$(find_python)
   say "making .venv with $(command -v "$python")"
-  rm -rf "$venv"
+  # Moved away first: half removed, it would pass for an environment and be the system's Python.
+  rm -rf "$venv.old"
+  if [ -e "$venv" ]; then mv "$venv" "$venv.old"; fi
+  rm -rf "$venv.old"
   mkdir "$venv" && : >"$ours"
   if ! has "$python" ensurepip; then apt_install "python$(version_of "$python")-venv"; fi
   if has "$python" ensurepip; then
@@ -98,7 +101,7 @@ make_venv() {
 }
 
 # --- the package --------------------------------------------------------------------------------
-runs() { [ -x "$venv/bin/python" ] && version_of "$venv/bin/python" >/dev/null; }
+runs() { "$venv/bin/python" -c 'import sys; sys.exit(sys.prefix == sys.base_prefix)' 2>/dev/null; }
 right_python() {
   [ -z "${PYTHON:-}" ] || [ "$(version_of "$PYTHON")" = "$(version_of "$venv/bin/python")" ]
 }
@@ -106,9 +109,12 @@ usable() { runs && right_python && [ "$(cat "$ready" 2>/dev/null)" = "$PWD" ]; }
 
 install_package() {
   say "installing nomad-mj and what it needs into .venv (a few minutes the first time)"
-  "$venv/bin/python" -m pip install --editable '.[dev]' ||
+  # Older ones search for a quarter of an hour for versions that fit together.
+  if ! "$venv/bin/python" -m pip install --quiet 'pip>=23.1' ||
+    ! "$venv/bin/python" -m pip install --editable '.[dev]'; then
     die "pip could not install nomad-mj (see above): check the network and" \
       "'$venv/bin/python -m pip config list', then type the same make again"
+  fi
   echo "$PWD" >"$ready"
 }
 
