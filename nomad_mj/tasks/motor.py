@@ -16,7 +16,7 @@ from nomad_mj.tasks.noise import OdometryNoise, RangeNoise, RangeNoiseStream
 from nomad_mj.tasks.odometry import Odometry
 from nomad_mj.tasks.physics import NavigationPhysics
 from nomad_mj.tasks.starts import Start, resolve_start
-from nomad_mj.types import FloatArray, Pose
+from nomad_mj.types import FloatArray
 
 REWARD_MARGIN = 5.0  # [m] from the goal at which the reward has fallen to 0.1
 
@@ -62,6 +62,11 @@ class MotorTask(control.Task):
         Options.
     random : int, SeedSequence or None
         Seed; the n-th episode after it is the same whatever was done in the ones before.
+
+    Attributes
+    ----------
+    start_pose : Pose
+        Where the present episode started.
     """
 
     def __init__(
@@ -86,8 +91,11 @@ class MotorTask(control.Task):
 
     def seed(self, random: int | np.random.SeedSequence | None) -> None:
         """Start the sequence of episodes anew from a seed."""
-        is_sequence = isinstance(random, np.random.SeedSequence)
-        self._seed = random if is_sequence else np.random.SeedSequence(random)
+        try:
+            is_sequence = isinstance(random, np.random.SeedSequence)
+            self._seed = random if is_sequence else np.random.SeedSequence(random)
+        except (TypeError, ValueError):
+            raise ConfigError(f"seed {random!r}: must be a whole number from 0 on") from None
         self._episode = 0
 
     def start_next_at(self, start: Start) -> None:
@@ -95,7 +103,7 @@ class MotorTask(control.Task):
         resolve_start(self.scene, start, np.random.default_rng(0))
         self._start = start
 
-    def _begin(self, physics: NavigationPhysics | None) -> Pose:
+    def _begin(self, physics: NavigationPhysics | None) -> None:
         """Set up the streams and sensors of an episode; place the robot if there is a physics."""
         key = (*self._seed.spawn_key, self._episode)
         streams = np.random.SeedSequence(self._seed.entropy, spawn_key=key).spawn(3)
@@ -109,7 +117,7 @@ class MotorTask(control.Task):
         self._noise = RangeNoiseStream(config.range_noise, layout.count, ranges)
         self._odometry = Odometry(start, config.odometry_noise, odometry)
         self._observation: OrderedDict[str, FloatArray] | None = None
-        return start
+        self.start_pose = start
 
     def initialize_episode(self, physics: NavigationPhysics) -> None:
         """Place the robot and reseed the sensors."""

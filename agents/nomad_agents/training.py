@@ -1,0 +1,184 @@
+"""Training by protocol P0: passes over all starts of a room, a greedy test after each.
+
+Training ends when one test solves every start: reached by reactions alone, each to a situation
+that was known, and without a virtual collision. Every episode has its own streams of random
+numbers, derived from the seed, the pass and the start, so that training can be interrupted
+between any two episodes and go on to the same bits.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from nomad_agents.episode import Episode, run_episode
+from nomad_agents.reactive_planner import ReactivePlanner
+from nomad_mj.envs import PathFinding
+from nomad_mj.errors import ConfigError
+
+_LEARN, _TEST, _EXPLORE = range(3)  # kinds of streams
+
+
+@dataclass(frozen=True)
+class TrainingConfig:
+    """How long to train.
+
+    Attributes
+    ----------
+    seed : int
+        Of all randomness.
+    max_passes : int
+        Give up after so many passes.
+    max_decisions : int
+        Give up after so many decisions; 0 for no limit.
+    episode_decisions, test_decisions : int
+        A learning episode, a test episode is given up after so many decisions.
+    """
+
+    seed: int = 0
+    max_passes: int = 100
+    max_decisions: int = 0
+    episode_decisions: int = 100
+    test_decisions: int = 50
+
+    def __post_init__(self) -> None:
+        if self.seed < 0:
+            raise ConfigError(f"seed {self.seed}: must be 0 or more")
+        for name in ("max_passes", "episode_decisions", "test_decisions"):
+            if getattr(self, name) < 1:
+                raise ConfigError(f"{name} {getattr(self, name)}: must be 1 or more")
+
+
+@dataclass
+class Training:
+    """How far a training is.
+
+    Attributes
+    ----------
+    passes : int
+        Passes begun.
+    testing : bool
+        Whether the test of this pass is under way.
+    next_start : int
+        The start that comes next in this pass or test.
+    solved, tested : int
+        Starts solved and tried in the newest test.
+    decisions, reactions, plannings, virtual_collisions, bumper_contacts : int
+        While learning.
+    sim_s, wall_s : float
+        Simulated and real time, tests included [s].
+    done : bool
+        Whether a test has solved every start.
+    """
+
+    passes: int = 1
+    testing: bool = False
+    next_start: int = 0
+    solved: int = 0
+    tested: int = 0
+    decisions: int = 0
+    reactions: int = 0
+    plannings: int = 0
+    virtual_collisions: int = 0
+    bumper_contacts: int = 0
+    sim_s: float = 0.0
+    wall_s: float = 0.0
+    done: bool = False
+
+
+def stream(seed: int, *key: int) -> np.random.SeedSequence:
+    """Return the seed of one stream of random numbers among those of `seed`."""
+    return np.random.SeedSequence(seed, spawn_key=key)
+
+
+def train(
+    env: PathFinding,
+    agent: ReactivePlanner,
+    config: TrainingConfig,
+    training: Training,
+    after_episode: Callable[[Training], None] | None = None,
+) -> Training:
+    """Train until done or given up; `training` says from where on, and is brought up to date.
+
+    Parameters
+    ----------
+    env, agent
+        Of the same robot; both are changed.
+    config, training
+        How long to train; how far it is.
+    after_episode : callable, optional
+        Called after each episode: to show progress, to save; what it raises ends the training
+        between two episodes.
+    """
+    starts = len(env.scene.arena.starts)
+    while not training.done and training.passes <= config.max_passes:
+        if config.max_decisions and training.decisions >= config.max_decisions:
+            break
+        began = time.perf_counter()
+        if training.testing:
+            _test(env, agent, config, training)
+        else:
+            _learn(env, agent, config, training)
+        _advance(training, starts)
+        training.wall_s += time.perf_counter() - began
+        if after_episode is not None:
+            after_episode(training)
+    return training
+
+
+def _learn(
+    env: PathFinding, agent: ReactivePlanner, config: TrainingConfig, training: Training
+) -> None:
+    place = (training.passes, training.next_start)
+    limit = config.episode_decisions
+    if config.max_decisions:
+        limit = min(limit, config.max_decisions - training.decisions)
+    episode = run_episode(
+        env,
+        agent,
+        seed=stream(config.seed, _LEARN, *place),
+        start=training.next_start,
+        explore=np.random.default_rng(stream(config.seed, _EXPLORE, *place)),
+        max_decisions=limit,
+    )
+    training.decisions += episode.decisions
+    training.reactions += episode.reactions
+    training.virtual_collisions += episode.virtual_collisions
+    training.bumper_contacts += episode.bumper_contacts
+    training.plannings = agent.plannings
+    training.sim_s += episode.duration
+
+
+def is_solved(episode: Episode) -> bool:
+    """Return whether reactions alone led to the goal, each to a situation that was known."""
+    return episode.strict and episode.unmatched == 0
+
+
+def _test(
+    env: PathFinding, agent: ReactivePlanner, config: TrainingConfig, training: Training
+) -> None:
+    if training.next_start == 0:
+        training.solved = training.tested = 0
+    episode = run_episode(
+        env,
+        agent,
+        seed=stream(config.seed, _TEST, training.passes, training.next_start),
+        start=training.next_start,
+        max_decisions=config.test_decisions,
+    )
+    training.solved += is_solved(episode)
+    training.tested += 1
+    training.sim_s += episode.duration
+
+
+def _advance(training: Training, starts: int) -> None:
+    """Go on to the next start, to the test, or to the next pass."""
+    training.next_start += 1
+    if training.next_start < starts:
+        return
+    training.next_start = 0
+    if training.testing:
+        training.done = training.solved == starts
+        training.passes += not training.done
+    training.testing = not training.testing
