@@ -34,10 +34,15 @@ def _find(kind: str, name_or_path: str | Path, known: dict[str, Path]) -> Path:
         return known[text]
     if isinstance(name_or_path, str) and Path(text).suffix == "" and "/" not in text:
         raise UnknownNameError(kind, text, known)
-    path = Path(text).expanduser()
-    if path.is_file():
-        return path
-    what = "is a folder, not a file" if path.is_dir() else "does not exist"
+    path = Path(text)
+    try:
+        path = path.expanduser()
+        if path.is_file():
+            return path
+        what = "is a folder, not a file" if path.is_dir() else "does not exist"
+    except (OSError, RuntimeError) as error:  # a name too long, a home that there is not
+        what = f"cannot be looked up ({getattr(error, 'strerror', None) or error})"
+        text = text if len(text) <= 80 else text[:77] + "..."
     raise ModelError(
         f"{kind} file {text!r} {what}; give an MJCF file or one of: {', '.join(sorted(known))}"
     )
