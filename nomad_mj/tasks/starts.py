@@ -49,9 +49,13 @@ def resolve_start(scene: Scene, start: Start, rng: np.random.Generator) -> Pose:
 
 
 def _check(scene: Scene, start: Sequence[float]) -> Pose:
-    values = np.asarray(start, dtype=np.float64)
+    try:
+        values = np.asarray(start, dtype=np.float64)
+    except (TypeError, ValueError):  # not numbers, or not as many in every row
+        values = np.array(np.nan)
     if values.shape not in ((2,), (3,)) or not np.isfinite(values).all():
-        raise StartError(f"start {start}: must be (x, y) or (x, y, heading) in metres and radians")
+        given = " ".join(str(start).split())
+        raise StartError(f"start {given}: must be (x, y) or (x, y, heading) in metres and radians")
     pose = Pose(*values.tolist(), *([0.0] if len(values) == 2 else []))
     radius = scene.robot.layout.radius
     where = f"start ({pose.x:g}, {pose.y:g})"
