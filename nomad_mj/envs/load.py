@@ -22,9 +22,10 @@ def _config(cls: type[Any], options: dict[str, Any]) -> Any:
     return cls(**{f.name: options.pop(f.name) for f in fields(cls) if f.name in options})
 
 
-def _refuse(what: str, left: Mapping[str, Any], known: list[str]) -> None:
-    if left:
-        raise ConfigError(f"unknown {what} {next(iter(left))!r}; there are: {', '.join(known)}")
+def _refuse(what: str, given: Mapping[str, Any], known: list[str]) -> None:
+    for name in given:
+        if name not in known:
+            raise ConfigError(f"unknown {what} {name!r}; there are: {', '.join(known)}")
 
 
 def make_motor(scene: Scene, options: dict[str, Any]) -> MotorTask:
@@ -81,21 +82,19 @@ def load(
     """
     if task_name not in TASKS:
         raise UnknownNameError("task", task_name, TASKS)
-    options = dict(task_kwargs or {})
-    environment = dict(environment_kwargs or {})
-    scene = build_scene(room, robot, rays_per_cone=options.pop("rays_per_cone", None))
+    options, environment = dict(task_kwargs or {}), dict(environment_kwargs or {})
     known = ["random", "rays_per_cone", *(f.name for f in fields(MotorConfig))]
     accepts = ["time_limit"]
     if task_name == "motor":
         accepts.append("flat_observation")
-        _refuse("environment option", {k: 0 for k in environment if k not in accepts}, accepts)
-        task = make_motor(scene, options)
-        _refuse("task option", options, known)
-        return MotorEnvironment(task, **environment)
-    _refuse("environment option", {k: 0 for k in environment if k not in accepts}, accepts)
+    else:
+        known.remove("ends_at_goal")  # path finding itself ends the episode there
+        known += [f.name for f in fields(PathFindingConfig)]
+    _refuse("task option", options, known)
+    _refuse("environment option", environment, accepts)
+    scene = build_scene(room, robot, rays_per_cone=options.pop("rays_per_cone", None))
+    if task_name == "motor":
+        return MotorEnvironment(make_motor(scene, options), **environment)
     config = _config(PathFindingConfig, options)
     task = make_motor(scene, {**options, "ends_at_goal": False})
-    for name in known:
-        options.pop(name, None)
-    _refuse("task option", options, known + [f.name for f in fields(PathFindingConfig)])
     return PathFinding(MotorEnvironment(task, time_limit=np.inf), config, **environment)
