@@ -1,5 +1,8 @@
 """Put a robot into a room: two MJCF files and the shared scene become one compiled model."""
 
+import warnings
+from collections.abc import Generator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -45,13 +48,30 @@ class Scene:
         return space
 
 
-def _read(kind: str, path: Path) -> mujoco.MjSpec:
+@contextmanager
+def _quietly() -> Generator[list[str], None, None]:
+    """Collect the engine's warnings instead of printing them."""
+    said: list[str] = []
+    previous = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(said.append)
     try:
-        spec = mujoco.MjSpec.from_file(str(path))
-        spec.copy().compile()
-    except (ValueError, RuntimeError, UnicodeDecodeError) as error:
-        reason = " ".join(str(error).split())
-        raise ModelError(f"{kind} file {str(path)!r} is not valid MJCF: {reason}") from None
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            yield said
+    finally:
+        mujoco.set_mju_user_warning(previous)
+
+
+def _read(kind: str, path: Path) -> mujoco.MjSpec:
+    with _quietly() as said:
+        try:
+            spec = mujoco.MjSpec.from_file(str(path))
+            spec.copy().compile()
+        except (ValueError, RuntimeError, UnicodeDecodeError) as error:
+            reason = " ".join(str(error).split())
+            raise ModelError(f"{kind} file {str(path)!r} is not valid MJCF: {reason}") from None
+    if any("NaN" in warning for warning in said):
+        raise ModelError(f"{kind} file {str(path)!r} holds a NaN; give a number in its place")
     return spec
 
 
@@ -65,6 +85,20 @@ def _sample_per_control_step(spec: mujoco.MjSpec, sub_steps: int) -> None:
             PREFIX + "translate_encoder"
         ):
             sensor.nsample = sub_steps
+
+
+def _compile(room: mujoco.MjSpec, robot: mujoco.MjSpec) -> mujoco.MjModel:
+    """Return the model of both in the shared scene, its sensors sampling once a control step."""
+    spec = mujoco.MjSpec.from_file(str(models_dir() / "scene.xml"))
+    with _quietly():  # scene.xml owns the options: a file's own serve only where it is opened alone
+        spec.attach(room, prefix=ROOM_PREFIX, frame=spec.worldbody.add_frame())
+        spec.attach(robot, prefix=PREFIX, frame=spec.worldbody.add_frame())
+        _sample_per_control_step(spec, round(CONTROL_TIMESTEP / spec.option.timestep))
+        model = spec.compile()
+    # The engine compares times without a tolerance: at the exact interval it skips samples.
+    rays = model.sensor_type == mujoco.mjtSensor.mjSENS_RANGEFINDER
+    model.sensor_interval[rays, 0] = CONTROL_TIMESTEP - 1e-9
+    return model
 
 
 def build_scene(
@@ -89,24 +123,16 @@ def build_scene(
         obstacle, a goal that cannot be reached.
     """
     room_path, robot_path = find_room(room), find_robot(robot)
-    spec = mujoco.MjSpec.from_file(str(models_dir() / "scene.xml"))
-    robot_spec = _read("robot", robot_path)
+    room_spec, robot_spec = _read("room", room_path), _read("robot", robot_path)
     if rays_per_cone is not None:
         set_rays_per_cone(robot_spec, rays_per_cone)
-    spec.attach(_read("room", room_path), prefix=ROOM_PREFIX, frame=spec.worldbody.add_frame())
-    spec.attach(robot_spec, prefix=PREFIX, frame=spec.worldbody.add_frame())
-    sub_steps = round(CONTROL_TIMESTEP / spec.option.timestep)
-    _sample_per_control_step(spec, sub_steps)
     try:
-        model = spec.compile()
-    except ValueError as error:
+        model = _compile(room_spec, robot_spec)
+    except (ValueError, RuntimeError) as error:
         reason = " ".join(str(error).split())
         raise ModelError(
             f"room {str(room)!r} and robot {str(robot)!r} do not fit together: {reason}"
         ) from None
-    # The engine compares times without a tolerance: at the exact interval it skips samples.
-    rays = model.sensor_type == mujoco.mjtSensor.mjSENS_RANGEFINDER
-    model.sensor_interval[rays, 0] = CONTROL_TIMESTEP - 1e-9
     description = describe_robot(model, robot_path.stem)
     arena = Arena.from_model(model, room_path.stem)
     plan = FloorPlan.from_model(model, description.height, exclude_body_prefix=PREFIX)
