@@ -1,12 +1,12 @@
 """The motor task: drive the three motors at 20 Hz on sensor readings."""
 
+import math
 from collections import OrderedDict
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from dm_control.rl import control
-from dm_control.utils import rewards
 from dm_env import specs
 
 from nomad_mj.errors import ConfigError
@@ -87,6 +87,7 @@ class MotorTask(control.Task):
         model = scene.model
         self._motors = np.array([model.actuator(PREFIX + name).id for name in ACTUATORS])
         self._limits: FloatArray = model.actuator_ctrlrange[self._motors]
+        self._goal: tuple[float, float] = tuple(scene.arena.goal.tolist())
         self._begin(None)
 
     def seed(self, random: int | np.random.SeedSequence | None) -> None:
@@ -171,13 +172,14 @@ class MotorTask(control.Task):
 
     def goal_distance(self, physics: NavigationPhysics) -> float:
         """Return the true distance from the robot's centre to the goal [m]."""
-        pose, goal = physics.pose(), self.scene.arena.goal
-        return float(np.hypot(goal[0] - pose.x, goal[1] - pose.y))
+        pose, goal = physics.pose(), self._goal
+        return math.hypot(goal[0] - pose.x, goal[1] - pose.y)
 
     def get_reward(self, physics: NavigationPhysics) -> float:
         """Return 1 at the goal, less the farther away, in [0, 1]."""
-        bounds = (0.0, self.config.goal_radius)
-        return float(rewards.tolerance(self.goal_distance(physics), bounds, margin=REWARD_MARGIN))
+        beyond = max(self.goal_distance(physics) - self.config.goal_radius, 0.0)
+        # dm_control's tolerance() with its defaults, which takes a tenth of the control step.
+        return 0.1 ** (beyond / REWARD_MARGIN) ** 2
 
     def get_termination(self, physics: NavigationPhysics) -> float | None:
         """Return discount 0 at the goal, else None: the episode goes on."""
