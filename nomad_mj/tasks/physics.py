@@ -39,11 +39,25 @@ class NavigationPhysics(Physics):
         other._bind()
         return other
 
+    def __getstate__(self) -> Any:
+        return super().__getstate__(), self.robot
+
+    def __setstate__(self, state: Any) -> None:
+        data, self.robot = state
+        super().__setstate__(data)
+
+    def free(self) -> None:
+        """Free the simulation and its OpenGL contexts; it cannot be used any more."""
+        super().free()
+        for name in ("_raw", "_sensordata", "_history"):  # they would keep the memory alive
+            vars(self).pop(name, None)
+
     def _bind(self) -> None:
         """Look names up once: the control step reads plain arrays."""
         model, data = self.model.ptr, self.data.ptr
         self._raw = (model, data)
         self._sensordata: FloatArray = data.sensordata
+        self._history: FloatArray = data.history
         rays = self.robot.rays
         self._ray_buffer = np.empty(len(rays.address))
         joints = [model.joint(PREFIX + name) for name in JOINTS]
@@ -51,15 +65,11 @@ class NavigationPhysics(Physics):
         servo = model.actuator(PREFIX + "steer")
         self._steer_servo = int(servo.actadr[0])  # -1 where the servo has no memory
         touch = [model.sensor(PREFIX + name) for name in self.robot.bumpers]
-        self._touch = _history(model, [int(s.id) for s in touch])
-        self._speed = _history(model, [int(model.sensor(PREFIX + "translate_encoder").id)])
+        self._touch = _samples(model, [int(s.id) for s in touch])
+        self._speed = _samples(model, [int(model.sensor(PREFIX + "translate_encoder").id)])[:, 0]
         self._timestep = float(model.opt.timestep)
-        self._angles = np.array(
-            [
-                int(model.sensor(PREFIX + name).adr[0])
-                for name in ("steer_encoder", "turret_encoder")
-            ]
-        )
+        angles = ("steer_encoder", "turret_encoder")
+        self._angles = [int(model.sensor(PREFIX + name).adr[0]) for name in angles]
 
     def reset(self, keyframe_id: int | None = None) -> None:
         """Set the simulation to its initial state, without computing any sensor.
@@ -93,7 +103,8 @@ class NavigationPhysics(Physics):
     def cone_ranges(self) -> FloatArray:
         """Return each cone's shortest ray, (C,) [m] from the perimeter; `_MISS` and over: none."""
         rays = self.robot.rays
-        values = self._sensordata.take(rays.address, out=self._ray_buffer)
+        # mode="clip": without a check of the indices, which would go through another buffer.
+        values = self._sensordata.take(rays.address, out=self._ray_buffer, mode="clip")
         values[values < 0] = _MISS
         cones = np.minimum.reduceat(values, rays.first)
         cones[cones >= rays.maximum] = _MISS  # the engine cuts what lies farther off to this
@@ -101,14 +112,14 @@ class NavigationPhysics(Physics):
 
     def bumpers(self) -> FloatArray:
         """Return 1 for each bumper touched since the last control step, else 0, (B,)."""
-        forces = self._raw[1].history.take(self._touch)
-        return (forces.max(axis=1, initial=0.0) > 0).astype(np.float64)
+        forces = self._history.take(self._touch)
+        return np.logical_or.reduce(forces, axis=0).astype(np.float64)
 
     def encoders(self) -> FloatArray:
         """Return distance driven since the last control step [m], steer and turret angle [rad]."""
-        speed = self._raw[1].history.take(self._speed).sum() * self._timestep
-        steer, turret = self._sensordata.take(self._angles)
-        return np.array([speed, steer, turret])
+        driven = sum(self._history.take(self._speed).tolist()) * self._timestep
+        steer, turret = self._angles
+        return np.array([driven, self._sensordata.item(steer), self._sensordata.item(turret)])
 
     def pose(self) -> Pose:
         """Return the true pose: where the base is and where the wheels point."""
@@ -116,14 +127,12 @@ class NavigationPhysics(Physics):
         return Pose(x, y, heading)
 
 
-def _history(model: mujoco.MjModel, sensors: list[int]) -> IntArray:
-    """Return where in ``data.history`` the last samples of scalar sensors are, (sensors, samples).
+def _samples(model: mujoco.MjModel, sensors: list[int]) -> IntArray:
+    """Return where in ``data.history`` the last samples of scalar sensors are, (samples, sensors).
 
     A scalar sensor's buffer holds two numbers of state, the samples' times, then their values.
     """
-    samples = int(model.sensor_history[sensors[0], 0]) if sensors else 0
-    values = np.arange(2 + samples, 2 + 2 * samples)
-    return (
-        np.array([int(model.sensor_historyadr[s]) for s in sensors], dtype=np.intp)[:, None]
-        + values
-    )
+    count = int(model.sensor_history[sensors[0], 0]) if sensors else 0
+    values = np.arange(2 + count, 2 + 2 * count, dtype=np.intp)
+    first = np.array([int(model.sensor_historyadr[s]) for s in sensors], dtype=np.intp)
+    return values[:, None] + first
