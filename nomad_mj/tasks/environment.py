@@ -1,8 +1,13 @@
 """dm_control's environment, with a seed and a start for `reset` and a `close` that closes."""
 
+import math
+from collections import OrderedDict
+from typing import Any
+
 import dm_env
 import numpy as np
 from dm_control.rl import control
+from dm_env import specs
 
 from nomad_mj.errors import ConfigError
 from nomad_mj.scene import CONTROL_TIMESTEP
@@ -63,6 +68,15 @@ class MotorEnvironment(control.Environment):
         if seed is not None:
             self.task.seed(seed)
         return super().reset()
+
+    def observation_spec(self) -> Any:
+        """Return the shapes and limits of the observations; flat ones have no limits."""
+        spec = super().observation_spec()
+        if not self._flat_observation:
+            return spec
+        size = sum(math.prod(part.shape) for part in spec.values())
+        name = control.FLAT_OBSERVATION_KEY
+        return OrderedDict([(name, specs.Array((size,), np.float64, name=name))])
 
     def close(self) -> None:
         """Free the simulation and its OpenGL contexts."""
