@@ -112,7 +112,7 @@ class PathFinding(dm_env.Environment):
     def observation_spec(self) -> "OrderedDict[str, specs.Array]":
         """Return the motor task's observations and what is told of the move."""
         result = OrderedDict(self.motor.observation_spec())
-        limit = self.config.motion.time_out + 10.0
+        limit = self.config.motion.longest
         result["duration"] = specs.BoundedArray((), np.float64, 0.0, limit, name="duration")
         result["driven"] = specs.BoundedArray((), np.float64, 0.0, np.inf, name="driven")
         result["clearance"] = specs.BoundedArray((), np.float64, 0.0, np.inf, name="clearance")
@@ -166,7 +166,9 @@ class PathFinding(dm_env.Environment):
             CONTROL_TIMESTEP,
         )
         watched, ahead = heading, self._ahead(heading, turret)
-        distance, bumped, driven, clearance, ticks = 0.0, False, 0.0, np.inf, 0
+        distance, driven, clearance, ticks = 0.0, 0.0, np.inf, 0
+        assert self._inner is not None
+        bumped = bool(self._inner.observation["bumpers"].any())
         while True:
             if drive.motion_heading != watched:
                 watched = drive.motion_heading

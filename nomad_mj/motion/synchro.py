@@ -12,8 +12,9 @@ from nomad_mj.types import MotionLimits
 
 _STEERED = math.radians(0.25)  # the wheels point where they should
 _ARRIVED = 0.004  # [m] left to go
-_STILL = 0.02  # [m/s]
-_HOLD_GAIN = 4.0  # [1/s] with which steer and turret hold their angle
+_STILL = 0.02  # [m/s], [rad/s]
+_HOLD_GAIN = 4.0  # [1/s] with which steer holds its angle
+_PATIENCE = 10.0  # [s] for a robot to come to rest that should
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class MotionConfig:
     creep : float
         Speed [m/s] down to which it slows on approach.
     time_out : float
-        A move takes no longer than this [s].
+        After this [s] a move is stopped.
     """
 
     security_distance: float = 0.06
@@ -42,6 +43,11 @@ class MotionConfig:
     braking: float = 0.6
     creep: float = 0.05
     time_out: float = 20.0
+
+    @property
+    def longest(self) -> float:
+        """No move takes longer than this, coming to rest included [s]."""
+        return self.time_out + _PATIENCE
 
 
 class Outcome(IntEnum):
@@ -115,6 +121,7 @@ class SynchroMove:
         self._speed = self._steer_speed = 0.0
         self._travelled = self._to_retract = 0.0
         self._elapsed = 0.0
+        self._steered = self._touching = False
         self.motion_heading = heading
         self.outcome = Outcome.NONE
         self.done = False
@@ -138,14 +145,14 @@ class SynchroMove:
         self._elapsed += self._timestep
         self._travelled += self._sign * distance
         self._judge(free, bumped, distance)
-        error = self._wheels - wheels
-        if self._phase is _Phase.STEER:
-            return 0.0, self._steer(error)
-        return self._drive(free, distance), _HOLD_GAIN * error
+        speed = self._drive(free, distance)
+        return speed, self._steer(self._wheels - wheels)
 
     def _judge(self, free: float, bumped: bool, distance: float) -> None:
         """Decide whether the present phase has come to its end."""
-        if bumped and self._phase is not _Phase.RETRACT and self.outcome is Outcome.NONE:
+        # A contact that was there before the robot moved is not this move's, which may end it.
+        touched, self._touching = bumped and not self._touching, bumped
+        if self._phase is _Phase.DRIVE and touched:
             self._end(Outcome.BUMPED)
         elif self._phase is _Phase.DRIVE:
             if free < self._config.security_distance:
@@ -160,8 +167,9 @@ class SynchroMove:
             if self.outcome is Outcome.NONE:
                 self.outcome = Outcome.TIMED_OUT
             self._phase = _Phase.STOP
-        if self._phase is _Phase.STOP and abs(distance) < _STILL * self._timestep:
-            self.done = True
+        if self._phase is _Phase.STOP:
+            still = abs(distance) < _STILL * self._timestep and abs(self._steer_speed) < _STILL
+            self.done = still or self._elapsed >= self._config.longest
 
     def _end(self, outcome: Outcome) -> None:
         self.outcome = outcome
@@ -172,13 +180,18 @@ class SynchroMove:
             self.motion_heading += math.pi
 
     def _steer(self, error: float) -> float:
+        """Return the speed at which to turn the wheels by `error` [rad/s]."""
         limits, dt = self._limits, self._timestep
-        if abs(error) <= _STEERED and abs(self._steer_speed) <= limits.steer_acceleration * dt:
-            self._phase = _Phase.DRIVE
-            return _HOLD_GAIN * error
-        speed = ramp_speed(abs(error), limits.steer, 0.8 * limits.steer_acceleration, dt)
-        wanted = math.copysign(speed, error)
         change = limits.steer_acceleration * dt
+        if self._phase is _Phase.STEER and abs(error) <= _STEERED:
+            self._steered = abs(self._steer_speed) <= change
+            self._phase = _Phase.DRIVE if self._steered else _Phase.STEER
+        wanted = 0.0  # out of time before the wheels were there
+        if self._steered:
+            wanted = _HOLD_GAIN * error
+        elif self._phase is _Phase.STEER:
+            speed = ramp_speed(abs(error), limits.steer, 0.8 * limits.steer_acceleration, dt)
+            wanted = math.copysign(speed, error)
         self._steer_speed += min(max(wanted - self._steer_speed, -change), change)
         return self._steer_speed
 
