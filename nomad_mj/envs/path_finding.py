@@ -106,8 +106,9 @@ class PathFinding(dm_env.Environment):
         return specs.BoundedArray((2,), np.float64, -1.0, 1.0, name="move")
 
     def reward_spec(self) -> specs.BoundedArray:
-        """Return z in [-1, 0]."""
-        return specs.BoundedArray((), np.float64, -1.0, 0.0, name="reward")
+        """Return z in [-1, 0]; lower if moves can be longer than 1 m."""
+        lowest = -(1.0 + self.config.action.longest) / 2
+        return specs.BoundedArray((), np.float64, lowest, 0.0, name="reward")
 
     def observation_spec(self) -> "OrderedDict[str, specs.Array]":
         """Return the motor task's observations and what is told of the move."""

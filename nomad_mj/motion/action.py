@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from nomad_mj.errors import ConfigError
 from nomad_mj.geometry import direction, rotate
 from nomad_mj.types import FloatArray
 
@@ -23,6 +24,12 @@ class ActionSpec:
 
     longest: float = 1.0
     shortest: float = 0.01
+
+    def __post_init__(self) -> None:
+        if not 0 < self.shortest <= self.longest < np.inf:
+            raise ConfigError(
+                f"moves of {self.shortest} to {self.longest} m: must be above 0, the shortest first"
+            )
 
 
 def displacement(action: npt.ArrayLike, goal: FloatArray, spec: ActionSpec) -> FloatArray:

@@ -12,7 +12,7 @@ SAFE_CLEARANCE = 0.1  # k_clear of Table 1 [m]
 def reinforcement(
     move: FloatArray, goal: FloatArray, clearance: npt.ArrayLike, collided: npt.ArrayLike = False
 ) -> FloatArray:
-    """Return z in [-1, 0].
+    """Return z in [-1, 0], for moves of 1 m at most.
 
     Parameters
     ----------

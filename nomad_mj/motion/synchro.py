@@ -8,6 +8,7 @@ import math
 from dataclasses import dataclass
 from enum import IntEnum
 
+from nomad_mj.errors import ConfigError
 from nomad_mj.types import MotionLimits
 
 _STEERED = math.radians(0.25)  # the wheels point where they should
@@ -43,6 +44,20 @@ class MotionConfig:
     braking: float = 0.6
     creep: float = 0.05
     time_out: float = 20.0
+
+    def __post_init__(self) -> None:
+        for field, least, most in (
+            ("security_distance", 0.0, math.inf),
+            ("ahead", 0.0, math.pi),
+            ("retract", 0.0, math.inf),
+            ("braking", 0.05, 1.0),
+            ("creep", 0.01, math.inf),
+            ("time_out", 0.1, math.inf),
+        ):
+            if not least <= getattr(self, field) <= most:
+                raise ConfigError(
+                    f"{field} {getattr(self, field)}: must be from {least:g} to {most:.4g}"
+                )
 
     @property
     def longest(self) -> float:
