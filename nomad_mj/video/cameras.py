@@ -9,10 +9,10 @@ from nomad_mj.robots import JOINTS, PREFIX
 from nomad_mj.scene import ROOM_PREFIX, Scene
 from nomad_mj.types import FloatArray
 
-_DISTANCE = 3.1  # [m] from the chase camera to what it looks at
-_AHEAD = 0.45  # [m] before the robot that it looks at
+_DISTANCE = 4.3  # [m] from the chase camera to what it looks at
+_AHEAD = 0.8  # [m] before the robot that it looks at
 _HEIGHT = 0.35  # [m] above the floor that it looks at
-_CLIMBS = (36.0, 42.0, 48.0, 54.0, 60.0, 66.0, 72.0)  # [deg] above the horizon
+_CLIMBS = (33.0, 39.0, 45.0, 51.0, 57.0, 63.0, 69.0)  # [deg] above the horizon
 _SWING = 2.2  # [rad/s] of a critically damped swing
 _RISE = 1.6  # [1/s] with which it climbs over walls
 

@@ -5,77 +5,41 @@ mujoco's own cost as much as the robot.
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from nomad_mj.types import FloatArray
-from nomad_mj.video.palette import RGB
+from nomad_mj.video.palette import INK, RGB
 
-_SIDES = 8
-_FLAT = np.eye(3)
+_SIDES = 10
+_FLAT = np.eye(3).ravel()
 _ANY = np.ones(3)
+_SHADE = np.array([*INK, 0.22], dtype=np.float32)
 
 
-class Marks:
-    """Adds marks to one scene, as long as it has room for them.
+class Sheet:
+    """Coloured triangles on the floor, worked out once and added to many scenes."""
 
-    Parameters
-    ----------
-    scene : mujoco.MjvScene
-        Call `mjv_updateScene` first: it throws away what was added.
-    """
-
-    def __init__(self, scene: mujoco.MjvScene) -> None:
-        self._scene = scene
-        self._geoms = scene.geoms  # a tuple of all places there are; looking it up is slow
-
-    def _add(
-        self,
-        kind: mujoco.mjtGeom,
-        size: FloatArray,
-        place: FloatArray,
-        axes: FloatArray,
-        colour: FloatArray,
-    ) -> mujoco.MjvGeom | None:
-        """Return a new mark, None where the scene is full: a picture lacks it, nothing breaks."""
-        index = self._scene.ngeom
-        if index >= self._scene.maxgeom:
-            return None
-        geom = self._geoms[index]
-        mujoco.mjv_initGeom(geom, kind, size, place, axes.ravel(), colour)
-        geom.category = mujoco.mjtCatBit.mjCAT_DECOR
-        self._scene.ngeom = index + 1
-        return geom
-
-    def line(self, start: FloatArray, end: FloatArray, width: float, colour: FloatArray) -> None:
-        """Draw a line between two places (3,) [m], `width` pixels wide, in RGBA."""
-        kind = mujoco.mjtGeom.mjGEOM_LINE
-        geom = self._add(kind, _ANY, start, _FLAT, colour.astype(np.float32))
-        if geom is not None:
-            mujoco.mjv_connector(geom, kind, width, start, end)
-
-    def triangle(self, corners: FloatArray, height: float, colour: FloatArray) -> None:
-        """Draw a triangle on the floor: corners (3, 2), height [m], RGBA."""
-        # The unit triangle (0, 0), (1, 0), (0, 1), sheared: its axes need not be orthogonal.
-        axes = np.eye(3)
-        axes[:2, 0] = corners[1] - corners[0]
-        axes[:2, 1] = corners[2] - corners[0]
-        place = np.array([corners[0, 0], corners[0, 1], height])
-        geom = self._add(mujoco.mjtGeom.mjGEOM_TRIANGLE, _ANY, place, axes, colour)
-        if geom is not None:
-            geom.emission = 0.35
-            geom.specular = 0.0
+    def __init__(self) -> None:
+        self.triangles: list[tuple[FloatArray, FloatArray, npt.NDArray[np.float32]]] = []
 
     def fan(self, outline: FloatArray, height: float, colour: RGB) -> None:
-        """Draw a convex polygon (N, 2) on the floor."""
+        """Fill a convex polygon (N, 2) [m] at a height [m]."""
         rgba = np.array([*colour, 1.0], dtype=np.float32)
-        for i in range(1, len(outline) - 1):
-            self.triangle(outline[[0, i, i + 1]], height, rgba)
+        x, y = outline[0].tolist()
+        place = np.array([x, y, height])
+        sides = (outline[1:] - outline[0]).tolist()
+        for (ax, ay), (bx, by) in pairwise(sides):
+            # The unit triangle (0, 0), (1, 0), (0, 1), sheared: its axes need not be orthogonal.
+            axes = np.array([ax, bx, 0.0, ay, by, 0.0, 0.0, 0.0, 1.0])
+            self.triangles.append((place, axes, rgba))
 
     def disc(self, centre: FloatArray, radius: float, height: float, colour: RGB) -> None:
-        """Draw a disc on the floor."""
-        angle = np.arange(_SIDES) * (2 * np.pi / _SIDES) + np.pi / _SIDES
+        """Draw a disc around `centre` (2,)."""
+        angle = np.arange(_SIDES) * (2 * np.pi / _SIDES)
         outline = centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
         self.fan(outline, height, colour)
 
@@ -85,7 +49,7 @@ class Marks:
         """Draw a band of constant width [m] along points (N, 2), one colour (N - 1) a piece."""
         steps = np.diff(points, axis=0)
         lengths = np.hypot(steps[:, 0], steps[:, 1])
-        for i in np.flatnonzero(lengths > 1e-6):
+        for i in np.flatnonzero(lengths > 1e-6).tolist():
             side = np.array([-steps[i, 1], steps[i, 0]]) * (width / 2 / lengths[i])
             a, b = points[i], points[i + 1]
             self.fan(np.array([a - side, b - side, b + side, a + side]), height, colours[i])
@@ -93,7 +57,7 @@ class Marks:
     def arrow(
         self, start: FloatArray, end: FloatArray, width: float, height: float, colour: RGB
     ) -> None:
-        """Draw an arrow on the floor between two places (2,) [m]."""
+        """Draw an arrow between two places (2,) [m]."""
         span = end - start
         length = float(np.hypot(span[0], span[1]))
         if length < 1e-6:
@@ -107,8 +71,60 @@ class Marks:
         wings = np.array([neck - 1.5 * width * across, end, neck + 1.5 * width * across])
         self.fan(wings, height, colour)
 
+
+class Marks:
+    """Adds marks to one scene, as long as it has room: a picture lacks the rest, nothing breaks.
+
+    Parameters
+    ----------
+    scene : mujoco.MjvScene
+        Call `mjv_updateScene` first: it throws away what was added.
+    """
+
+    def __init__(self, scene: mujoco.MjvScene) -> None:
+        self._scene = scene
+        self._geoms = scene.geoms  # a tuple of all places there are; looking it up is slow
+
+    def add(self, sheet: Sheet) -> None:
+        """Add a sheet of triangles."""
+        first, most = self._scene.ngeom, self._scene.maxgeom
+        kind, init = mujoco.mjtGeom.mjGEOM_TRIANGLE, mujoco.mjv_initGeom
+        triangles = sheet.triangles[: most - first]
+        for geom, (place, axes, rgba) in zip(self._geoms[first:most], triangles, strict=False):
+            init(geom, kind, _ANY, place, axes, rgba)
+        self._scene.ngeom = first + len(triangles)
+
+    def lines(
+        self, starts: FloatArray, ends: FloatArray, width: float, colours: FloatArray
+    ) -> None:
+        """Draw lines between places (N, 3) [m], `width` pixels wide, in RGBA (N, 4)."""
+        kind = mujoco.mjtGeom.mjGEOM_LINE
+        rgba = colours.astype(np.float32)
+        for start, end, colour in zip(starts, ends, rgba, strict=True):
+            geom = self._place()
+            if geom is None:
+                return
+            mujoco.mjv_initGeom(geom, kind, _ANY, start, _FLAT, colour)
+            mujoco.mjv_connector(geom, kind, width, start, end)
+
+    def shade(self, centre: FloatArray, radius: float, height: float) -> None:
+        """Darken a round patch of the floor: nothing casts a shadow of its own."""
+        self._ellipsoid(np.array([radius, radius, 1e-3]), np.array([*centre, height]), _SHADE)
+
     def ball(self, centre: FloatArray, radius: float, colour: RGB) -> None:
-        """Draw a ball."""
-        rgba = np.array([*colour, 1.0], dtype=np.float32)
-        size = np.full(3, radius)
-        self._add(mujoco.mjtGeom.mjGEOM_ELLIPSOID, size, centre, _FLAT, rgba)
+        """Draw a ball around `centre` (3,)."""
+        self._ellipsoid(np.full(3, radius), centre, np.array([*colour, 1.0], dtype=np.float32))
+
+    def _ellipsoid(
+        self, size: FloatArray, place: FloatArray, rgba: npt.NDArray[np.float32]
+    ) -> None:
+        geom = self._place()
+        if geom is not None:
+            mujoco.mjv_initGeom(geom, mujoco.mjtGeom.mjGEOM_ELLIPSOID, size, place, _FLAT, rgba)
+
+    def _place(self) -> mujoco.MjvGeom | None:
+        index = self._scene.ngeom
+        if index >= self._scene.maxgeom:
+            return None
+        self._scene.ngeom = index + 1
+        return self._geoms[index]

@@ -13,6 +13,11 @@ _STILL = 1e-3  # [m]
 class Trail:
     """A polyline that grows as the robot drives.
 
+    Parameters
+    ----------
+    place : array (2,)
+        Where it begins [m].
+
     Attributes
     ----------
     colour : RGB
@@ -21,26 +26,21 @@ class Trail:
         Places to mark with a dot.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, place: FloatArray) -> None:
         self.colour: RGB = GREY
         self.stops: list[tuple[FloatArray, RGB]] = []
-        self._points: list[FloatArray] = []
-        self._colours: list[RGB] = []
+        self._points: list[FloatArray] = [place, place]
+        self._colours: list[RGB] = [GREY]
         self._aim: FloatArray | None = None
 
     def stop(self, colour: RGB) -> None:
         """Mark the present place and go on in another colour."""
         self.colour = colour
-        if self._points:
-            self.stops.append((self._points[-1], colour))
-            self._turn()
+        self.stops.append((self._points[-1], colour))
+        self._turn()
 
     def extend(self, place: FloatArray) -> None:
         """Drive on to a place (2,) [m]."""
-        if not self._points:
-            self._points = [place, place]
-            self._colours = [self.colour]
-            return
         anchor, last = self._points[-2:]
         step = place - last
         if float(np.hypot(step[0], step[1])) < _STILL:
@@ -65,6 +65,11 @@ class Trail:
         self._colours.append(self.colour)
         self._aim = None
 
-    def polyline(self, head: FloatArray) -> tuple[FloatArray, list[RGB]]:
-        """Return points (N, 2) up to `head` (2,), where the robot is drawn, and N - 1 colours."""
-        return np.array([*self._points, head]), [*self._colours, self.colour]
+    def bends(self) -> tuple[FloatArray, list[RGB]]:
+        """Return where the path bends, (N, 2), and the N - 1 colours in between."""
+        return np.reshape(self._points[:-1], (-1, 2)), self._colours[:-1]
+
+    @property
+    def tail(self) -> tuple[FloatArray, RGB]:
+        """The last bend, from which the path leads straight to the robot, and its colour."""
+        return self._points[-2], self.colour

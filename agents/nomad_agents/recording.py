@@ -1,0 +1,120 @@
+"""Record an agent on video: what it perceives, decides and does."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from nomad_agents.agent import Agent, Decision
+from nomad_agents.episode import Episode, Turn, Watcher, run_episode
+from nomad_mj.envs import PathFinding
+from nomad_mj.motion import displacement
+from nomad_mj.tasks import Start
+from nomad_mj.video import BLUE, GREY, ORANGE, Caption, EpisodeRecorder
+
+_COLOURS = {"reacted": BLUE, "planned": ORANGE, "unmatched": GREY}
+
+
+class Recording(NamedTuple):
+    """What was recorded: the video, its length in frames and in seconds, and the episodes."""
+
+    path: Path
+    frames: int
+    seconds: float
+    episodes: tuple[Episode, ...]
+
+
+def _caption(number: int, decision: Decision, z: float | None) -> Caption:
+    fields = [("decision", str(number))]
+    if decision.category >= 0:
+        fields.append(("category", str(decision.category)))
+    if z is not None:
+        fields.append(("last z", f"{round(z, 2) + 0.0:.2f}"))  # never "-0.00"
+    return Caption(decision.kind, _COLOURS[decision.kind], tuple(fields))
+
+
+def _narrator(
+    recorder: EpisodeRecorder, env: PathFinding, agent: Agent, title: str, subtitle: str
+) -> Watcher:
+    """Return a watcher that tells the recorder what the agent is about in one episode."""
+    number, z = 0, None
+
+    def watch(turn: Turn) -> None:
+        nonlocal number, z
+        percept, decision, after = turn
+        if after is not None:
+            z = float(after.reward)
+            recorder.caption(_caption(number, decision, z))
+            return
+        if number == 0:
+            recorder.start_episode(title, subtitle)
+        number += 1
+        recorder.annotate(
+            percept.grid,
+            displacement(decision.action, percept.goal, env.config.action),
+            _caption(number, decision, z),
+            cell=agent.situation.grid.resolution,
+        )
+
+    return watch
+
+
+def record(
+    env: PathFinding,
+    agent: Agent,
+    path: str | Path,
+    *,
+    starts: Sequence[Start],
+    seed: int = 0,
+    view: str = "side",
+    speed: float = 1.0,
+    fps: float = 30.0,
+    size: tuple[int, int] | None = None,
+    max_decisions: int = 100,
+    explore: np.random.Generator | None = None,
+) -> Recording:
+    """Record one episode from each start, one after another, and return what they took.
+
+    Parameters
+    ----------
+    env, agent
+        Of the same robot.
+    path : str or Path
+        The video, ``.mp4``; it appears when all episodes are over.
+    starts : sequence
+        As of `PathFinding.reset`.
+    seed : int
+        Of the environment.
+    view, speed, fps, size
+        As of `EpisodeRecorder`.
+    max_decisions, explore
+        As of `run_episode`.
+
+    Raises
+    ------
+    NomadError
+        An option, a start or a path that is wrong; no OpenGL.
+    """
+    episodes: list[Episode] = []
+    title = f"{agent.name} in {env.scene.arena.name}".replace("_", " ")
+    with EpisodeRecorder(env, path, view=view, size=size, fps=fps, speed=speed) as recorder:
+        for i, stream in enumerate(np.random.SeedSequence(seed).spawn(len(starts))):
+            subtitle = f"start {i + 1} of {len(starts)}" if len(starts) > 1 else ""
+            episode = run_episode(
+                env,
+                agent,
+                seed=stream,
+                start=starts[i],
+                explore=explore,
+                max_decisions=max_decisions,
+                watch=_narrator(recorder, env, agent, title, subtitle),
+            )
+            episodes.append(episode)
+            outcome = "goal reached" if episode.reached else "goal not reached"
+            told = (
+                f"{episode.decisions} decisions, {episode.driven:.1f} m, {episode.duration:.0f} s"
+            )
+            recorder.hold(1.6, outcome, told)
+        frames = recorder.frames
+    return Recording(Path(path), frames, frames / fps, tuple(episodes))

@@ -1,0 +1,215 @@
+"""Record episodes as a video: the simulation runs as it would, the recorder looks on."""
+
+from pathlib import Path
+from types import TracebackType
+from typing import NamedTuple
+
+import dm_env
+import mujoco
+import numpy as np
+from typing_extensions import Self
+
+from nomad_mj.envs import PathFinding
+from nomad_mj.errors import ConfigError
+from nomad_mj.types import FloatArray
+from nomad_mj.video.canvas import Image
+from nomad_mj.video.caption import Caption
+from nomad_mj.video.encoder import Encoder
+from nomad_mj.video.layout import Size
+from nomad_mj.video.studio import Studio
+from nomad_mj.video.title import title_card
+
+_EPS = 1e-9  # [s]
+
+
+class _State(NamedTuple):
+    time: float
+    qpos: FloatArray
+    ranges: FloatArray
+
+
+class EpisodeRecorder:
+    """Writes an MP4 of what happens in an environment while the ``with`` block runs.
+
+    The file appears when the block ends; if it ends with an exception, Ctrl-C included, there is
+    none.
+
+    Parameters
+    ----------
+    env : PathFinding
+        What to look at. Its `on_control_step` is borrowed; one that was set still gets called.
+    path : str or Path
+        The video, ``.mp4``.
+    view : str
+        "chase", "top", "overview" or "side".
+    size : (int, int), optional
+        Width and height [px], even; that of the view if None.
+    fps : float
+        Frames a second of the video.
+    speed : float
+        Simulated seconds in a second of the video.
+
+    Attributes
+    ----------
+    frames : int
+        Frames written so far.
+
+    Raises
+    ------
+    UnknownNameError, ConfigError
+        An option that makes no sense.
+    OutputError
+        The file cannot be written.
+    RenderError
+        No OpenGL works here.
+    """
+
+    def __init__(
+        self,
+        env: PathFinding,
+        path: str | Path,
+        *,
+        view: str = "chase",
+        size: Size | None = None,
+        fps: float = 30.0,
+        speed: float = 1.0,
+    ) -> None:
+        if not 0.01 <= speed <= 1000:
+            raise ConfigError(f"speed {speed:g}: must be 0.01 to 1000 times real time")
+        self._env = env
+        self._fps, self._speed = fps, speed
+        self._rings = [ring.name for ring in env.scene.robot.layout.rings]
+        self._studio = Studio(env.scene, view, size, speed)
+        try:
+            self._encoder = Encoder(path, self._studio.layout.size, fps)
+        except BaseException:
+            self._studio.close()
+            raise
+        self._before: _State | None = None
+        self._origin, self._since = 0.0, 0
+        self._change = np.zeros(env.scene.model.nv)
+        self.frames = 0
+
+    def __enter__(self) -> Self:
+        try:
+            self._encoder.open()
+        except BaseException:
+            self._studio.close()
+            raise
+        self._borrowed = self._env.on_control_step
+        self._env.on_control_step = self._on_control_step
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._env.on_control_step = self._borrowed
+        self._studio.close()
+        if kind is None:
+            self._encoder.finish()
+        else:
+            self._encoder.discard()
+
+    def start_episode(self, title: str = "", subtitle: str = "", pause: float = 1.2) -> None:
+        """Look at a new episode; call it after the environment's reset.
+
+        Parameters
+        ----------
+        title, subtitle : str
+            Shown over the first picture, if not empty.
+        pause : float
+            For how long [s of the video].
+        """
+        self._begin(self._see(None))
+        if title:
+            self.hold(pause, title, subtitle)
+
+    def hold(self, seconds: float, title: str = "", subtitle: str = "") -> None:
+        """Stand still for some seconds of the video, with a title if there is one."""
+        layout = self._studio.layout
+        card = title_card(title, subtitle, layout.panes[0].box, layout.unit) if title else None
+        time = self._before.time if self._before is not None else 0.0
+        frame = self._studio.frame(time, 0.0, card)
+        for _ in range(round(seconds * self._fps)):
+            self._write(frame)
+
+    def annotate(
+        self,
+        grid: FloatArray | None = None,
+        move: FloatArray | None = None,
+        caption: Caption | str = "",
+        *,
+        cell: float = 0.2,
+    ) -> None:
+        """Say what is decided now; shown until the next call.
+
+        Parameters
+        ----------
+        grid : array (N, N), optional
+            Certainty grid for the inset; rows along y, oriented as the world, the robot in the
+            middle.
+        move : array (2,), optional
+            Chosen displacement [m], oriented as the world.
+        caption : Caption or str
+            The line of text; its colour is that of the move and of the path from here on.
+        cell : float
+            Side of a cell of the grid [m].
+        """
+        if isinstance(caption, str):
+            caption = Caption(fields=(("", caption),) if caption else ())
+        if self._before is None:
+            self._begin(self._see(None))
+        self._studio.show_move(grid, move, cell, caption)
+
+    def caption(self, caption: Caption) -> None:
+        """Change the caption only: what became of the decision."""
+        self._studio.caption = caption
+
+    def _see(self, step: dm_env.TimeStep | None) -> _State:
+        physics = self._env.physics
+        if step is None:
+            rays = self._env.scene.robot.rays
+            ranges = np.clip(physics.cone_ranges(), rays.minimum, rays.maximum)
+        else:
+            ranges = np.concatenate([step.observation[ring] for ring in self._rings])
+        return _State(float(physics.data.time), physics.data.qpos.copy(), ranges)
+
+    def _begin(self, state: _State) -> None:
+        self._before = state
+        self._origin, self._since = state.time, 0
+        self._studio.show(self._env.physics.data)
+        self._studio.begin()
+        self._studio.painter.ranges = state.ranges
+
+    def _on_control_step(self, step: dm_env.TimeStep) -> None:
+        if self._borrowed is not None:
+            self._borrowed(step)
+        state = self._see(step)
+        if self._before is None or state.time <= self._before.time:
+            self._begin(state)
+            return
+        self._film(self._before, state)
+        self._before = state
+        self._studio.show(self._env.physics.data)
+        self._studio.drive()
+
+    def _film(self, before: _State, after: _State) -> None:
+        """Write the frames after one control step up to the next."""
+        model = self._env.scene.model
+        mujoco.mj_differentiatePos(model, self._change, 1.0, before.qpos, after.qpos)
+        self._studio.painter.ranges = after.ranges
+        step = self._speed / self._fps
+        while (time := self._origin + self._since * step) <= after.time + _EPS:
+            self._since += 1
+            share = (time - before.time) / (after.time - before.time)
+            qpos = before.qpos.copy()
+            mujoco.mj_integratePos(model, qpos, self._change, share)
+            self._studio.show(self._env.physics.data, qpos)
+            self._write(self._studio.frame(time, 1 / self._fps))
+
+    def _write(self, frame: Image) -> None:
+        self._encoder.write(frame)
+        self.frames += 1
