@@ -23,6 +23,8 @@ _WORDS = {
     "glfw": ("glfw", "on", "enable", "enabled", "true", "1"),
     "off": ("off", "disable", "disabled", "false", "0"),
 }
+# Holds what MUJOCO_GL held before it was set to "off" for want of a backend that works.
+_FOUND_NONE = "NOMAD_MJ_FOUND_NO_GL"
 # libegl1 alone lacks the software driver, and the library PyOpenGL asks for errors.
 _INSTALL = {
     "egl": "sudo apt-get install -y libegl1 libopengl0 libgl1-mesa-dri",
@@ -108,6 +110,9 @@ def gl_report() -> GLReport:
         Its `message` is one line for a person.
     """
     asked = os.environ.get("MUJOCO_GL", "").strip() or None
+    if asked == "off" and _FOUND_NONE in os.environ:
+        # That "off" is ours, from a parent process: search again, to say what was tried.
+        asked = os.environ[_FOUND_NONE] or None
     bound = sys.modules.get("dm_control._render")
     report = _adopt(asked, getattr(bound, "BACKEND", None)) if bound else _search(asked)
     _bind(report)
@@ -150,6 +155,8 @@ def _order(asked: str | None) -> tuple[str, ...]:
 def _bind(report: GLReport) -> None:
     """Tell mujoco, dm_control and PyOpenGL, in this process and its children."""
     os.environ["MUJOCO_GL"] = report.backend
+    if report.attempts and not report.works:
+        os.environ[_FOUND_NONE] = report.asked or ""
     if report.backend in ("egl", "osmesa"):
         os.environ["PYOPENGL_PLATFORM"] = report.backend
     if report.backend == "osmesa":

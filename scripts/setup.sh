@@ -29,6 +29,8 @@ apt() {
 }
 installed() { [ "$(dpkg-query -Wf '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
+installable() { apt-get -qq -s install "$@" >/dev/null 2>&1; }
+
 # Each package by itself: one that a release lacks (libosmesa6) must not keep the others out.
 apt_install() {
   local package updated=''
@@ -140,24 +142,28 @@ sys.exit(all(problem_with(name) for name in ("egl", "osmesa", "glfw")))' 2>/dev/
 }
 
 set_up_gl() {
-  local package missing=()
   if [ "${1:-}" != --apt ] && [ "$(cat "$gl" 2>/dev/null)" = works ]; then return; fi
   if [ "${1:-}" = --apt ] || [ ! -e "$gl" ]; then apt_install "${gl_packages[@]}"; fi
   : >"$gl"
-  if gl_works; then echo works >"$gl" && return; fi
+  if gl_works; then echo works >"$gl"; else say_gl; fi
+}
+
+# The one line to type, of packages that can be installed: EGL, or OSMesa, is enough.
+say_gl() {
+  local package update='' missing=() egl=()
   for package in "${gl_packages[@]}"; do
-    if ! installed "$package"; then missing+=("$package"); fi
+    if installed "$package"; then continue; fi
+    missing+=("$package")
+    if [ "$package" != libosmesa6 ]; then egl+=("$package"); fi
   done
-  if ! ((${#missing[@]})); then
+  if ! installable "${missing[@]}"; then missing=("${egl[@]}"); fi
+  if ! installable "${missing[@]}"; then update='sudo apt-get update && '; fi
+  if ((${#missing[@]})); then
+    say "no OpenGL works here: all but pictures will. On Debian or Ubuntu type:" \
+      "${update}sudo apt-get install -y ${missing[*]}"
+  else
     say "no OpenGL works here, though its libraries are installed: all but pictures will"
-    return
   fi
-  # Some releases lack libosmesa6, or cannot install it; EGL is enough.
-  if ! apt-get -qq -s install "${missing[@]}" >/dev/null 2>&1; then
-    missing=("${missing[@]/libosmesa6/}")
-  fi
-  say "no OpenGL works here: all but pictures will. On Debian or Ubuntu type:" \
-    "sudo apt-get install -y ${missing[*]}"
 }
 
 # Two makes at once take turns.

@@ -18,6 +18,7 @@ CHOSEN = (
     "WAYLAND_DISPLAY",
     "MUJOCO_EGL_DEVICE_ID",
     "DISABLE_RENDER_THREAD_OFFLOADING",
+    "NOMAD_MJ_FOUND_NO_GL",
 )
 CHOOSE = "from nomad_mj._gl import *; print(choose_backend()); print(gl_report().message)\n"
 MODEL = """
@@ -116,6 +117,14 @@ def test_the_backend_of_a_dm_control_imported_first_is_kept() -> None:
         {"MUJOCO_GL": _gl.choose_backend()},
     )
     assert chosen == bound
+
+
+def test_a_child_process_says_what_its_parent_tried() -> None:
+    child = "import subprocess, sys; subprocess.run([sys.executable, '-c', sys.argv[1]])"
+    script = f"import sys; sys.argv.append({CHOOSE!r})\n{CHOOSE}sys.stdout.flush()\n{child}"
+    lines = run(script, {"MUJOCO_GL": "glfw"})
+    assert lines[:2] == lines[2:]
+    assert "no display" in lines[3]
 
 
 def test_the_message_names_every_backend_tried_and_what_to_install() -> None:
