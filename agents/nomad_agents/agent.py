@@ -8,7 +8,7 @@ import numpy as np
 from nomad_mj.perception import Percept, SituationSpec
 from nomad_mj.types import FloatArray, SensorLayout
 
-DecisionKind = Literal["reacted", "planned", "unmatched"]
+DecisionKind = Literal["reacted", "planned", "none"]
 
 
 class Decision(NamedTuple):
@@ -18,14 +18,16 @@ class Decision(NamedTuple):
     ----------
     action : array (2,)
         (dx, dy) in [-1, 1], relative to the shortest path vector.
-    kind : "reacted", "planned" or "unmatched"
-        Where the action came from; "unmatched" is a reaction to a situation unlike any known.
+    kind : "reacted", "planned" or "none"
+        Where the action came from; "none": the agent does not know how to act.
     category : int
         The category that acted, -1 where there is none.
     drawn : array (2,)
         What exploration drew (l of Eq 15), for learning.
     mean : array (2,)
         What it was drawn around (mu of Eq 12).
+    unmatched : bool
+        Whether the situation was unlike any that is known, for an agent that does not learn.
     """
 
     action: FloatArray
@@ -33,6 +35,7 @@ class Decision(NamedTuple):
     category: int = -1
     drawn: FloatArray = np.zeros(2)
     mean: FloatArray = np.zeros(2)
+    unmatched: bool = False
 
 
 class Agent(ABC):

@@ -103,8 +103,8 @@ def run_episode(
     reached = False
     while not step.last() and counts["decisions"] < max_decisions:
         decision = agent.act(percept, explore)
-        counts["unmatched"] += decision.kind == "unmatched"
-        if decision.kind == "unmatched" and decision.category < 0:
+        counts["unmatched"] += decision.unmatched
+        if decision.kind == "none":
             break  # the agent does not know how to act
         if watch is not None:
             watch(Turn(percept, decision, None))
@@ -113,7 +113,7 @@ def run_episode(
             watch(Turn(percept, decision, step))
         seen = step.observation
         counts["decisions"] += 1
-        counts["reactions"] += decision.kind != "planned"
+        counts["reactions"] += decision.kind == "reacted"
         outcomes.append(int(seen["outcome"]))
         duration += float(seen["duration"])
         driven += float(seen["driven"])

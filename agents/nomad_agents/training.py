@@ -1,7 +1,7 @@
 """Training by protocol P0: passes over all starts of a room, a greedy test after each.
 
-Training ends when one test solves every start: reached by reactions alone, each to a situation
-that was known, and without a virtual collision. Every episode has its own streams of random
+Training ends when one test solves every start, that is, reaches the goal from it.
+Every episode has its own streams of random
 numbers, derived from the seed, the pass and the start, so that training can be interrupted
 between any two episodes and go on to the same bits.
 """
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nomad_agents.episode import Episode, run_episode
+from nomad_agents.episode import run_episode
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import ConfigError
@@ -150,11 +150,6 @@ def _learn(
     training.sim_s += episode.duration
 
 
-def is_solved(episode: Episode) -> bool:
-    """Return whether reactions alone led to the goal, each to a situation that was known."""
-    return episode.strict and episode.unmatched == 0
-
-
 def _test(
     env: PathFinding, agent: ReactivePlanner, config: TrainingConfig, training: Training
 ) -> None:
@@ -167,7 +162,7 @@ def _test(
         start=training.next_start,
         max_decisions=config.test_decisions,
     )
-    training.solved += is_solved(episode)
+    training.solved += episode.reached
     training.tested += 1
     training.sim_s += episode.duration
 

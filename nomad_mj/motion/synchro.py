@@ -38,7 +38,7 @@ class MotionConfig:
         After this [s] a move is stopped.
     """
 
-    security_distance: float = 0.06
+    security_distance: float = 0.05
     ahead: float = math.radians(75)
     retract: float = 0.3
     braking: float = 0.6

@@ -51,6 +51,7 @@ class _Tables(NamedTuple):
     limit: FloatArray  # (count,) readings from here on are a miss
     angle: FloatArray  # (cells**2,) bearing of each cell's centre, in bins
     distance: FloatArray  # (cells**2, 1) from the robot's centre to each cell's centre
+    outside: FloatArray  # (cells**2,) 0 where the robot itself stands, else 1
 
 
 def cell_centres(spec: GridSpec) -> FloatArray:
@@ -73,13 +74,15 @@ def _tables(layout: SensorLayout, spec: GridSpec) -> _Tables:
     covered = np.take_along_axis(covers, order, axis=1)
     relative = np.take_along_axis(off_axis / half_angle, order, axis=1)
     centres = cell_centres(spec).reshape(-1, 2)
+    distance = np.hypot(centres[:, 0], centres[:, 1])
     return _Tables(
         sensor=np.where(covered, order, len(bearings)),
         certainty=1 - (1 - spec.edge_certainty) * np.minimum(relative, 1.0) ** 2,
-        reach=np.append(np.minimum(max_range, np.inf) + layout.radius, -np.inf),
+        reach=np.append(max_range + layout.radius, -np.inf),
         limit=np.minimum(max_range, spec.perception_range),
         angle=np.arctan2(centres[:, 1], centres[:, 0]) * (_BINS / (2 * np.pi)),
-        distance=np.hypot(centres[:, 0], centres[:, 1])[:, None],
+        distance=distance[:, None],
+        outside=(distance > layout.radius).astype(np.float64),
     )
 
 
@@ -119,5 +122,5 @@ def certainty_grid(
     occupied = np.where(told, ramp * tables.certainty[bins], np.inf)
     # A cone tells of the nearest thing in it, so wherever one is empty nothing can be.
     grid = occupied.min(axis=-1)
-    grid = np.where(np.isinf(grid), spec.unseen, grid)
+    grid = np.where(np.isinf(grid), spec.unseen, grid) * tables.outside
     return grid.reshape(*lead, spec.cells, spec.cells)

@@ -30,7 +30,7 @@ class SituationSpec:
     """
 
     width: float = 0.35
-    circular: bool = True
+    circular: bool = False
     intensity_scale: float = 5.0
     use_intensity: bool = True
     grid: GridSpec = field(default_factory=GridSpec)

@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nomad_agents.agent import Agent, Decision
+from nomad_agents.agent import Agent, Decision, DecisionKind
 from nomad_agents.reactive_planner.config import ReactivePlannerConfig
 from nomad_agents.reactive_planner.network import Match, Network
-from nomad_agents.reactive_planner.planner import estimate_value, plan
+from nomad_agents.reactive_planner.planner import Plan, estimate_value, plan
 from nomad_mj.perception import Percept
 from nomad_mj.types import FloatArray, SensorLayout
 
@@ -63,17 +63,18 @@ class ReactivePlanner(Agent):
 
     def act(self, percept: Percept, explore: np.random.Generator | None) -> Decision:
         """Categorise the situation and react; plan first where nothing matches (situation 1)."""
-        match, kind = self._classify(percept), "reacted"
+        match, unmatched = self._classify(percept), False
+        kind: DecisionKind = "reacted"
         if match.category < 0:
             if explore is not None:
                 self._plan_category(percept)
                 match, kind = self._classify(percept), "planned"
             elif self.config.no_match == "plan":
-                return Decision(self._plan(percept).action, "planned")
+                return Decision(self._plan(percept).action, "planned", unmatched=True)
             elif self.config.no_match == "nearest" and len(self.network.category):
-                match, kind = self.network.nearest(percept.situation), "unmatched"
+                match, unmatched = self.network.nearest(percept.situation), True
             else:
-                return Decision(np.zeros(2), "unmatched")
+                return Decision(np.zeros(2), "none", unmatched=True)
         network, j = self.network, match.category
         mine = network.category == j
         mean = match.activation[mine] @ network.weights[mine]  # Eq 12
@@ -81,7 +82,7 @@ class ReactivePlanner(Agent):
         if explore is not None:
             drawn = explore.normal(mean, self._sigma(j))  # Eq 15
         action = self._output(j, drawn)
-        return Decision(action, kind, j, drawn, mean)
+        return Decision(action, kind, j, drawn, mean, unmatched)
 
     def _output(self, category: int, level: FloatArray) -> FloatArray:
         """Return the action units' output (Eqs 11 and 16)."""
@@ -93,7 +94,7 @@ class ReactivePlanner(Agent):
         trace = float(self.network.trace[category])
         return max(self.config.k_sigma * trace, self.config.sigma_floor)
 
-    def _plan(self, percept: Percept):
+    def _plan(self, percept: Percept) -> Plan:
         config = self.config
         return plan(
             percept, self.layout.radius, config.situation.grid, config.action, config.planner

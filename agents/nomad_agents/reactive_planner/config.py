@@ -25,7 +25,8 @@ class PlannerConfig:
     occupied : float
         From this probability on a cell bars the way.
     margin : float
-        Half a cell [m]: what the grid shows can be so much nearer than the cell's centre.
+        What the grid shows can be so much nearer [m]: half a cell, and the noise of 15 % at the
+        end of the longest move.
     """
 
     k_length: float = 0.75
@@ -33,7 +34,7 @@ class PlannerConfig:
     k_clear: float = 0.1
     k_alpha: float = math.radians(45)
     occupied: float = 0.5
-    margin: float = 0.15
+    margin: float = 0.25
 
 
 @dataclass(frozen=True)
@@ -86,12 +87,18 @@ class ReactivePlannerConfig:
     eta_reward: float = 0.75
     eta_penalty: float = 0.075
     remember_good_actions: bool = False
-    no_match: Literal["plan", "nearest", "stay"] = "stay"
+    no_match: Literal["plan", "nearest", "stay"] = "plan"
     planner: PlannerConfig = field(default_factory=PlannerConfig)
     situation: SituationSpec = field(default_factory=SituationSpec)
     action: ActionSpec = field(default_factory=ActionSpec)
 
 
 FAITHFUL = ReactivePlannerConfig()
-TUNED = replace(FAITHFUL, k_ind=0.02, sigma_floor=0.1, no_match="nearest")
+TUNED = replace(
+    FAITHFUL,
+    k_ind=0.02,
+    sigma_floor=0.1,
+    no_match="nearest",
+    situation=replace(FAITHFUL.situation, circular=True),
+)
 CONFIGS: dict[str, ReactivePlannerConfig] = {"faithful": FAITHFUL, "tuned": TUNED}

@@ -1,0 +1,82 @@
+"""What several commands share: names of options, environments, progress, output."""
+
+import json
+import math
+import signal
+import sys
+from collections.abc import Generator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+import nomad_mj
+from nomad_mj.envs import PathFinding
+from nomad_mj.errors import OutputError
+
+SUFFIXES = {".npz", ".mp4", ".csv"}
+
+
+def console(*, json_wanted: bool) -> Console:
+    """Return where people read: standard error if standard output is for a program."""
+    return Console(stderr=json_wanted, highlight=False)
+
+
+@contextmanager
+def path_finding(room: str, robot: str, **task: Any) -> Generator[PathFinding, None, None]:
+    """Load the path-finding environment and close it in the end."""
+    env = nomad_mj.load("path_finding", room=room, robot=robot, task_kwargs=task)
+    try:
+        yield env
+    finally:
+        env.close()
+
+
+def print_json(values: Mapping[str, Any]) -> None:
+    """Print one line of JSON; what is not a number becomes null."""
+    clean = {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in values.items()}
+    print(json.dumps(clean), flush=True)
+
+
+def output_file(out: str, default_name: str, suffix: str) -> Path:
+    """Return the file that `--out` means: itself, or a file of `default_name` in that folder.
+
+    Raises
+    ------
+    OutputError
+        A name with another suffix, or a place that cannot be written.
+    """
+    path = Path(out).expanduser()
+    if path.suffix in SUFFIXES and path.suffix != suffix:
+        raise OutputError(f"--out {out!r}: this writes {suffix}; give such a file or a folder")
+    if path.suffix != suffix or path.is_dir():
+        path = path / f"{default_name}{suffix}"
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        probe = path.parent / f".{path.name}.writable"
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise OutputError(f"cannot write {str(path)!r}: {error.strerror}") from None
+    return path
+
+
+@contextmanager
+def interruptible() -> Generator[None, None, None]:
+    """Let SIGTERM end the work as Ctrl-C does."""
+
+    def interrupt(number: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def fail(message: str) -> int:
+    """Print one line of error; return the exit code of a user's mistake."""
+    print(f"nomad-mj: {message}", file=sys.stderr)
+    return 2

@@ -1,0 +1,143 @@
+"""``nomad-mj train``."""
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import cattrs
+from rich.console import Console
+
+from nomad_agents.checkpoint import load_checkpoint, save_checkpoint
+from nomad_agents.cli.common import console, interruptible, output_file, path_finding, print_json
+from nomad_agents.cli.progress import TrainingProgress
+from nomad_agents.reactive_planner import ConfigName, ReactivePlanner
+from nomad_agents.registry import AGENTS, find_config
+from nomad_agents.training import Training, TrainingConfig, train
+from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, PathFinding
+from nomad_mj.errors import CheckpointError, ConfigError, UnknownNameError
+
+
+@dataclass(frozen=True)
+class Train:
+    """Train the reactive planner until one greedy test solves every start of the room."""
+
+    room: str = DEFAULT_ROOM
+    """Name of a room, or an MJCF file."""
+    robot: str = DEFAULT_ROBOT
+    """Name of a robot, or an MJCF file."""
+    agent: str = "reactive_planner"
+    """Name of an agent that learns."""
+    config: ConfigName = "faithful"
+    """The paper's parameters, or better ones found since."""
+    seed: int = 0
+    """Of all randomness."""
+    max_passes: int = 100
+    """Give up after so many passes over the starts."""
+    max_decisions: int = 0
+    """Give up after so many decisions; 0: no limit."""
+    out: str = "renders"
+    """Checkpoint to write, .npz, or a folder for it (ROOM_AGENT_SEED.npz)."""
+    resume: bool = False
+    """Go on from the checkpoint --out, if there is one, to the same bits."""
+    json: bool = False
+    """Print one line of JSON last on standard output."""
+
+    def run(self) -> int:
+        """Train; return the exit code."""
+        if self.agent not in AGENTS:
+            raise UnknownNameError("agent", self.agent, AGENTS)
+        if self.agent != ReactivePlanner.name:
+            raise ConfigError(f"agent {self.agent!r} does not learn; try {ReactivePlanner.name!r}")
+        settings = TrainingConfig(self.seed, self.max_passes, self.max_decisions)
+        screen = console(json_wanted=self.json)
+        with path_finding(self.room, self.robot) as env, interruptible():
+            name = f"{env.scene.arena.name}_{self.agent}_{self.seed}"
+            path = output_file(self.out, name, ".npz")
+            agent, training = self._begin(env, path)
+            run_training(env, agent, settings, training, path, screen)
+            report = training_report(env, agent, training)
+            screen.print(f"{_verdict(report, training)}: {path}", soft_wrap=True)
+        if self.json:
+            print_json(report)
+        return 0
+
+    def _begin(self, env: PathFinding, path: Path) -> tuple[ReactivePlanner, Training]:
+        """Return a new agent, or the one of the checkpoint to resume, and how far it is."""
+        config = find_config(self.config)
+        if not (self.resume and path.exists()):
+            return ReactivePlanner(env.scene.robot.layout, config), Training()
+        checkpoint = load_checkpoint(path)
+        wanted = (env.scene.arena.name, env.scene.robot.name, self.seed, config)
+        found = (
+            checkpoint.room,
+            checkpoint.robot,
+            checkpoint.training.get("seed"),
+            checkpoint.agent.config,
+        )
+        for what, mine, theirs in zip(("room", "robot", "seed", "config"), wanted, found, strict=True):
+            if mine != theirs:
+                told = "" if what == "config" else f": {theirs}, not {mine}"
+                raise CheckpointError(f"cannot resume {str(path)!r}: it is of another {what}{told}")
+        state = {k: v for k, v in checkpoint.training.items() if k != "seed"}
+        try:
+            return checkpoint.agent, cattrs.structure(state, Training)
+        except cattrs.BaseValidationError:
+            raise CheckpointError(f"checkpoint {str(path)!r} holds no state of training") from None
+
+
+def run_training(
+    env: PathFinding,
+    agent: ReactivePlanner,
+    settings: TrainingConfig,
+    training: Training,
+    path: Path,
+    screen: Console,
+) -> None:
+    """Train with a progress bar; write a checkpoint after each pass and at the end.
+
+    Interrupted, it writes one too, and raises KeyboardInterrupt: training can go on from there.
+    """
+
+    def save() -> None:
+        scene = env.scene
+        state = {**asdict(training), "seed": settings.seed}
+        save_checkpoint(path, agent, scene.arena.name, scene.robot.name, state)
+
+    with TrainingProgress(screen, len(env.scene.arena.starts)) as progress:
+
+        def after_episode(now: Training) -> None:
+            progress.show(now, agent)
+            if now.next_start == 0:
+                save()
+
+        save()
+        try:
+            train(env, agent, settings, training, after_episode)
+        finally:
+            save()
+
+
+def training_report(
+    env: PathFinding, agent: ReactivePlanner, training: Training
+) -> dict[str, Any]:
+    """Return what `nomad-mj train --json` prints."""
+    return {
+        "solved": training.solved,
+        "starts": len(env.scene.arena.starts),
+        "reactions": training.reactions,
+        "plannings": training.plannings,
+        "virtual_collisions": training.virtual_collisions,
+        "bumper_contacts": training.bumper_contacts,
+        "categories": len(agent.network.value),
+        "exemplars": len(agent.network.category),
+        "passes": training.passes,
+        "wall_s": round(training.wall_s, 3),
+        "sim_s": round(training.sim_s, 3),
+    }
+
+
+def _verdict(report: dict[str, Any], training: Training) -> str:
+    solved = f"solved {report['solved']} of {report['starts']} starts"
+    return f"{solved} after {report['reactions']} reactions" if training.done else (
+        f"gave up, having {solved}, after {training.decisions} decisions"
+    )

@@ -1,0 +1,1 @@
+"""What is measured and drawn of agents: figures, speed."""

@@ -1,0 +1,106 @@
+"""Speed, as ratios to bare MuJoCo measured in the same run: what `nomad-mj bench` prints."""
+
+import time
+from collections.abc import Callable
+
+import mujoco
+import numpy as np
+
+import nomad_mj
+from nomad_agents.episode import percept_of
+from nomad_agents.reactive_planner import FAITHFUL, ReactivePlanner, plan
+from nomad_agents.training import Training, TrainingConfig, train
+from nomad_mj.scene import CONTROL_TIMESTEP, Scene
+from nomad_mj.types import FloatArray
+
+EXEMPLARS = 500
+_DRIVE: FloatArray = np.array([0.25, 0.4, 0.0])  # round in a circle: touches nothing
+
+
+def _timed(work: Callable[[], object], repeats: int) -> float:
+    """Return the seconds that `repeats` calls take."""
+    began = time.perf_counter()
+    for _ in range(repeats):
+        work()
+    return time.perf_counter() - began
+
+
+class BareLoop:
+    """The least that a control step can be: one call of `mj_step` on the same model."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._model = scene.model
+        self._data = mujoco.MjData(scene.model)
+        self._sub_steps = round(CONTROL_TIMESTEP / scene.model.opt.timestep)
+        joints = [scene.model.joint(f"robot/{axis}").qposadr[0] for axis in ("base_x", "base_y")]
+        self._data.qpos[joints] = scene.arena.starts[0, :2]
+        self._data.ctrl[:] = _DRIVE
+
+    def step(self) -> None:
+        """Advance by one control step."""
+        mujoco.mj_step(self._model, self._data, self._sub_steps)
+
+
+def control_step_ratio(room: str, blocks: int = 40, steps: int = 50) -> float:
+    """Return the time of a control step of the motor task over that of the bare loop, median."""
+    env = nomad_mj.load("motor", room=room, task_kwargs={"random": 0, "ends_at_goal": False})
+    env.reset(start=0)
+    bare = BareLoop(env.task.scene)
+    ratios = [
+        _timed(lambda: env.step(_DRIVE), steps) / _timed(bare.step, steps) for _ in range(blocks)
+    ]
+    env.close()
+    return float(np.median(ratios))
+
+
+def training_ratio(room: str, decisions: int = 400) -> float:
+    """Return the time of a training over that of as many control steps of the bare loop."""
+    with nomad_mj.load("path_finding", room=room) as env:
+        agent = ReactivePlanner(env.scene.robot.layout, FAITHFUL)
+        bare = BareLoop(env.scene)
+        bare_s = 0.0
+
+        def after_episode(training: Training) -> None:
+            # Beside the training, not after it: both see the same load of the machine.
+            nonlocal bare_s, steps
+            episode = round(training.sim_s / CONTROL_TIMESTEP) - steps
+            steps += episode
+            bare_s += _timed(bare.step, episode)
+
+        steps = 0
+        training = Training()
+        train(env, agent, TrainingConfig(max_decisions=decisions), training, after_episode)
+        return training.wall_s / bare_s
+
+
+def _filled_agent(scene: Scene) -> ReactivePlanner:
+    """Return an agent with as many exemplars as the bench asks for, random but plausible."""
+    agent = ReactivePlanner(scene.robot.layout, FAITHFUL)
+    rng = np.random.default_rng(0)
+    for category in range(EXEMPLARS // 10):
+        agent.network.add_category(rng.uniform(-1, 1, 2), -float(category))
+    for number in range(EXEMPLARS):
+        situation = rng.uniform(0, 1, FAITHFUL.situation.size)
+        agent.network.add_exemplar(situation, number % (EXEMPLARS // 10))
+    return agent
+
+
+def decision_times(room: str, repeats: int = 300) -> tuple[float, float]:
+    """Return the times of a reaction (perception to action) and of a planning, medians [s]."""
+    with nomad_mj.load("path_finding", room=room, task_kwargs={"random": 0}) as env:
+        agent = _filled_agent(env.scene)
+        observation = env.reset(start=0).observation
+        layout, config = env.scene.robot.layout, agent.config
+        percept = percept_of(observation, layout, config.situation)
+        agent.network.situation[0] = percept.situation  # so that something matches
+        grid = config.situation.grid
+
+        def react() -> None:
+            agent.act(percept_of(observation, layout, config.situation), None)
+
+        def think() -> None:
+            plan(percept, layout.radius, grid, config.action, config.planner)
+
+        reaction = [_timed(react, 1) for _ in range(repeats)]
+        planning = [_timed(think, 1) for _ in range(repeats)]
+    return float(np.median(reaction)), float(np.median(planning))
