@@ -4,7 +4,7 @@ from nomad_mj._gl import choose_backend
 
 choose_backend()  # before anything imports mujoco or dm_control, which read MUJOCO_GL only once
 
-from nomad_mj.assets import robots, rooms  # noqa: E402
+from nomad_mj.assets import list_robots, list_rooms  # noqa: E402
 from nomad_mj.envs import PathFinding, PathFindingConfig, load  # noqa: E402
 from nomad_mj.errors import NomadError  # noqa: E402
 from nomad_mj.motion import Outcome  # noqa: E402
@@ -21,7 +21,7 @@ __all__ = [
     "PathFinding",
     "PathFindingConfig",
     "RangeNoise",
+    "list_robots",
+    "list_rooms",
     "load",
-    "robots",
-    "rooms",
 ]

@@ -18,12 +18,12 @@ def _named(pattern: str) -> dict[str, Path]:
     return {path.stem: path for path in sorted(models_dir().glob(pattern))}
 
 
-def rooms() -> dict[str, Path]:
+def list_rooms() -> dict[str, Path]:
     """Return the rooms that come with the package, by name."""
     return _named("arenas/*.xml")
 
 
-def robots() -> dict[str, Path]:
+def list_robots() -> dict[str, Path]:
     """Return the robots that come with the package, by name."""
     return _named("robots/*/*.xml")
 
@@ -58,9 +58,9 @@ def find_room(name_or_path: str | Path) -> Path:
     ModelError
         A path where there is no file.
     """
-    return _find("room", name_or_path, rooms())
+    return _find("room", name_or_path, list_rooms())
 
 
 def find_robot(name_or_path: str | Path) -> Path:
     """Return the file of a robot, given its name or a path; errors as of `find_room`."""
-    return _find("robot", name_or_path, robots())
+    return _find("robot", name_or_path, list_robots())

@@ -34,7 +34,7 @@ class Checkpoint(NamedTuple):
     training: dict[str, Any]
 
 
-def write_atomically(path: Path, write: Callable[[IO[bytes]], None]) -> None:
+def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
     """Write a file whole or not at all.
 
     Raises
@@ -78,9 +78,8 @@ def save_checkpoint(
             "numpy": np.__version__,
         },
     }
-    arrays = agent.network.arrays()
-    text = np.array(json.dumps(metadata))
-    write_atomically(path, lambda file: np.savez(file, metadata=text, **arrays))
+    arrays: dict[str, Any] = {"metadata": np.array(json.dumps(metadata)), **agent.network.arrays()}
+    write_atomically(path, lambda file: np.savez(file, **arrays))
 
 
 def load_checkpoint(path: Path) -> Checkpoint:
@@ -94,7 +93,7 @@ def load_checkpoint(path: Path) -> Checkpoint:
     try:
         with np.load(path, allow_pickle=False) as file:
             arrays: dict[str, np.ndarray] = {name: file[name] for name in file.files}
-        metadata: dict[str, Any] = json.loads(str(arrays.pop("metadata")[()]))
+        metadata: Any = json.loads(str(arrays.pop("metadata")[()]))
     except FileNotFoundError:
         raise CheckpointError(f"checkpoint {str(path)!r} does not exist") from None
     except OSError as error:
@@ -117,9 +116,7 @@ def load_checkpoint(path: Path) -> Checkpoint:
         agent.network.restore(arrays)
         training: dict[str, Any] = dict(metadata["training"])
         agent.plannings = int(training["plannings"])
-        return Checkpoint(
-            agent, layout, str(metadata["room"]), str(metadata["robot"]), training
-        )
+        return Checkpoint(agent, layout, str(metadata["room"]), str(metadata["robot"]), training)
     except (KeyError, TypeError, ValueError, cattrs.BaseValidationError) as error:
         raise _corrupt(path, str(error)) from None
 

@@ -13,7 +13,7 @@ from nomad_mj.motion import displacement
 from nomad_mj.tasks import Start
 from nomad_mj.video import BLUE, GREY, ORANGE, Caption, EpisodeRecorder
 
-_COLOURS = {"reacted": BLUE, "planned": ORANGE, "unmatched": GREY}
+_COLOURS = {"reacted": BLUE, "planned": ORANGE, "none": GREY}
 
 
 class Recording(NamedTuple):

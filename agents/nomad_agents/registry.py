@@ -46,8 +46,8 @@ def find_agent(name_or_path: str, layout: SensorLayout, config: ReactivePlannerC
     checkpoint = load_checkpoint(path)
     if checkpoint.layout != layout:
         raise CheckpointError(
-            f"checkpoint {name_or_path!r} is for other sensors: {describe_layout(checkpoint.layout)}; "
-            f"this robot has {describe_layout(layout)}"
+            f"checkpoint {name_or_path!r} is for other sensors: "
+            f"{describe_layout(checkpoint.layout)}; this robot has {describe_layout(layout)}"
         )
     return checkpoint.agent
 

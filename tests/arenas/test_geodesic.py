@@ -10,7 +10,7 @@ from scipy import sparse
 from scipy.sparse import csgraph
 
 from nomad_mj.arenas import Arena, FloorPlan, Geodesic
-from nomad_mj.assets import rooms
+from nomad_mj.assets import list_rooms
 from nomad_mj.errors import StartError
 from nomad_mj.types import FloatArray
 
@@ -18,7 +18,7 @@ RADIUS = 0.265
 
 
 def load(room: str) -> tuple[FloorPlan, FloatArray]:
-    model = mujoco.MjModel.from_xml_path(str(rooms()[room]))
+    model = mujoco.MjModel.from_xml_path(str(list_rooms()[room]))
     return FloorPlan.from_model(model, 0.9), Arena.from_model(model, room).goal
 
 

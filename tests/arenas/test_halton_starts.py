@@ -4,7 +4,7 @@ import shapely
 
 from nomad_mj.arenas import FloorPlan
 from nomad_mj.arenas.halton import halton_starts, main
-from nomad_mj.assets import rooms
+from nomad_mj.assets import list_rooms
 from nomad_mj.errors import StartError
 
 RING = shapely.box(-1, -1, 9, 5) - shapely.box(0, 0, 8, 4)
@@ -25,7 +25,7 @@ def test_too_many_starts() -> None:
 
 
 def test_prints_the_sites_of_a_room(capsys: pytest.CaptureFixture[str]) -> None:
-    path = rooms()["paper_room"]
+    path = list_rooms()["paper_room"]
     main([str(path), "50"])
     printed = capsys.readouterr().out
     assert printed.count("\n") == 50

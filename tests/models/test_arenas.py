@@ -24,12 +24,12 @@ SPEC_BOXES = {
 
 
 def load(room: str) -> tuple[mujoco.MjModel, Arena, FloorPlan]:
-    model = mujoco.MjModel.from_xml_path(str(rooms()[room]))
+    model = mujoco.MjModel.from_xml_path(str(list_rooms()[room]))
     return model, Arena.from_model(model, room), FloorPlan.from_model(model, HEIGHT)
 
 
 def test_all_rooms_are_here() -> None:
-    assert tuple(rooms()) == ROOMS
+    assert tuple(list_rooms()) == ROOMS
 
 
 @pytest.mark.parametrize("room", SPEC_BOXES)
@@ -61,7 +61,7 @@ def test_geoms_are_named_and_higher_than_the_sonars(room: str) -> None:
 
 @pytest.mark.parametrize("room", ROOMS)
 def test_the_scene_alone_owns_light_and_options(room: str) -> None:
-    spec = mujoco.MjSpec.from_file(str(rooms()[room]))
+    spec = mujoco.MjSpec.from_file(str(list_rooms()[room]))
     assert not list(spec.lights)
     assert all(geom.type != mujoco.mjtGeom.mjGEOM_PLANE for geom in spec.geoms)
     assert spec.option.timestep == mujoco.MjSpec().option.timestep
@@ -154,7 +154,7 @@ def test_scene_settings() -> None:
 @pytest.mark.parametrize("room", ROOMS)
 def test_a_room_attaches_to_the_scene(room: str) -> None:
     spec = mujoco.MjSpec.from_file(str(models_dir() / "scene.xml"))
-    arena = mujoco.MjSpec.from_file(str(rooms()[room]))
+    arena = mujoco.MjSpec.from_file(str(list_rooms()[room]))
     spec.attach(arena, prefix="room/", frame=spec.worldbody.add_frame())
     model = spec.compile()
     _, alone, plan = load(room)

@@ -35,7 +35,9 @@ def path_finding(room: str, robot: str, **task: Any) -> Generator[PathFinding, N
 
 def print_json(values: Mapping[str, Any]) -> None:
     """Print one line of JSON; what is not a number becomes null."""
-    clean = {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in values.items()}
+    clean = {
+        k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in values.items()
+    }
     print(json.dumps(clean), flush=True)
 
 

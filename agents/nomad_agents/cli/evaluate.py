@@ -24,11 +24,11 @@ METRICS = {
     "strict_success_rate": "without a virtual collision",
     "spl": "SPL (success weighted by path length)",
     "path_ratio_median": "path length / shortest path, median",
-    "min_clearance_m": "least clearance [m]",
+    "min_clearance_m": "least clearance, m",
     "virtual_collisions": "virtual collisions",
     "bumper_contacts": "bumper contacts",
     "no_match_rate": "episodes with an unknown situation",
-    "mean_time_s": "mean time to the goal [s]",
+    "mean_time_s": "mean time to the goal, s",
 }
 
 
@@ -62,11 +62,7 @@ class Evaluate:
             agent = find_agent(self.agent, env.scene.robot.layout, find_config(self.config))
             name = f"{env.scene.arena.name}_{agent.name}_evaluation"
             path = output_file(self.out, name, ".csv") if self.out else None
-            starts = (
-                draw_starts(env, int(self.starts), self.seed)
-                if self.starts.isdigit()
-                else read_starts(Path(self.starts))
-            )
+            starts = choose_starts(env, self.starts, self.seed)
             trials = run_evaluation(env, agent, starts, self.seed, self.max_decisions, screen)
             summary = summarise(env, trials)
         if path is not None:
@@ -81,6 +77,13 @@ class Evaluate:
         return 0
 
 
+def choose_starts(env: PathFinding, starts: str, seed: int) -> FloatArray:
+    """Return the starts (n, 3) that `--starts` means: a number of them, or those of a file."""
+    if starts.isdigit():
+        return draw_starts(env, int(starts), seed)
+    return read_starts(Path(starts))
+
+
 def run_evaluation(
     env: PathFinding,
     agent: Agent,
@@ -92,9 +95,7 @@ def run_evaluation(
     """Evaluate with a progress bar; see `evaluation.evaluate`."""
     with trial_progress(screen) as progress:
         task = progress.add_task(f"evaluating {agent.name}", total=len(starts))
-        return evaluate(
-            env, agent, starts, seed, max_decisions, lambda _: progress.advance(task)
-        )
+        return evaluate(env, agent, starts, seed, max_decisions, lambda _: progress.advance(task))
 
 
 def format_metric(value: float) -> str:

@@ -22,8 +22,8 @@ class List:
     def run(self) -> int:
         """Print them; return the exit code."""
         found = {
-            "rooms": [*nomad_mj.rooms()],
-            "robots": [*nomad_mj.robots()],
+            "rooms": [*nomad_mj.list_rooms()],
+            "robots": [*nomad_mj.list_robots()],
             "tasks": [*TASKS],
             "agents": [*AGENTS],
             "configs": [*CONFIGS],

@@ -1,13 +1,26 @@
 """Progress bars."""
 
+from collections.abc import Iterable
 from types import TracebackType
 
-from rich.console import Console
+from rich.console import Console, RenderableType
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.text import Text
 from typing_extensions import Self
 
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.training import Training
+
+
+class _CountedProgress(Progress):
+    """A progress bar with a line of text below."""
+
+    counts = ""
+
+    def get_renderables(self) -> Iterable[RenderableType]:
+        """Return the bar and the text."""
+        yield from super().get_renderables()
+        yield Text(self.counts, style="dim")
 
 
 class TrainingProgress:
@@ -15,15 +28,15 @@ class TrainingProgress:
 
     def __init__(self, screen: Console, starts: int) -> None:
         self._starts = starts
-        self._progress = Progress(
+        self._progress = _CountedProgress(
             TextColumn("{task.description}"),
-            BarColumn(bar_width=18),
+            BarColumn(bar_width=30),
             MofNCompleteColumn(),
-            TextColumn("{task.fields[counts]}"),
+            TextColumn("{task.fields[solved]}"),
             TimeElapsedColumn(),
             console=screen,
         )
-        self._task = self._progress.add_task("pass 1", total=starts, counts="")
+        self._task = self._progress.add_task("pass 1", total=starts, solved="")
 
     def __enter__(self) -> Self:
         self._progress.start()
@@ -39,22 +52,21 @@ class TrainingProgress:
 
     def show(self, training: Training, agent: ReactivePlanner) -> None:
         """Show how far the training is."""
-        tested = training.testing or training.tested == self._starts
         faster = training.sim_s / training.wall_s if training.wall_s > 0 else 0.0
-        counts = [
-            f"solved {training.solved}/{self._starts}" if tested else "",
-            f"{training.reactions} reactions",
-            f"{training.plannings} plannings",
-            f"{training.virtual_collisions} virtual collisions",
-            f"{len(agent.network.category)} exemplars",
-            f"{faster:.0f}x real time",
-        ]
-        phase = "test" if training.testing else "pass"
+        self._progress.counts = ", ".join(
+            [
+                f"{training.reactions} reactions",
+                f"{training.plannings} plannings",
+                f"{training.virtual_collisions} virtual collisions",
+                f"{len(agent.network.category)} exemplars",
+                f"{faster:.0f} x real time",
+            ]
+        )
         self._progress.update(
             self._task,
-            description=f"{phase} {training.passes}",
+            description=f"{'test' if training.testing else 'pass'} {training.passes}",
             completed=training.next_start or self._starts,
-            counts=", ".join(filter(None, counts)),
+            solved=f"solved {training.solved} of {training.tested}" if training.tested else "",
         )
 
 

@@ -74,7 +74,9 @@ class Train:
             checkpoint.training.get("seed"),
             checkpoint.agent.config,
         )
-        for what, mine, theirs in zip(("room", "robot", "seed", "config"), wanted, found, strict=True):
+        for what, mine, theirs in zip(
+            ("room", "robot", "seed", "config"), wanted, found, strict=True
+        ):
             if mine != theirs:
                 told = "" if what == "config" else f": {theirs}, not {mine}"
                 raise CheckpointError(f"cannot resume {str(path)!r}: it is of another {what}{told}")
@@ -117,9 +119,7 @@ def run_training(
             save()
 
 
-def training_report(
-    env: PathFinding, agent: ReactivePlanner, training: Training
-) -> dict[str, Any]:
+def training_report(env: PathFinding, agent: ReactivePlanner, training: Training) -> dict[str, Any]:
     """Return what `nomad-mj train --json` prints."""
     return {
         "solved": training.solved,
@@ -138,6 +138,8 @@ def training_report(
 
 def _verdict(report: dict[str, Any], training: Training) -> str:
     solved = f"solved {report['solved']} of {report['starts']} starts"
-    return f"{solved} after {report['reactions']} reactions" if training.done else (
-        f"gave up, having {solved}, after {training.decisions} decisions"
+    return (
+        f"{solved} after {report['reactions']} reactions"
+        if training.done
+        else (f"gave up, having {solved}, after {training.decisions} decisions")
     )

@@ -48,14 +48,19 @@ def _room_axes(scene: Scene, title: str) -> tuple[Figure, Axes]:
     figure = Figure(figsize=(width, width * (y1 - y0) / (x1 - x0) + 0.75), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
-    patches = [Polygon(np.asarray(shape.exterior.coords)) for shape in scene.plan.footprints]
+    patches = [Polygon(shapely.get_coordinates(shape)) for shape in scene.plan.footprints]
     axes.add_collection(PatchCollection(patches, facecolor=OBSTACLE, edgecolor=OBSTACLE))
     x, y = scene.arena.goal.tolist()
     side = 0.36
     axes.add_patch(
         Polygon(
-            [(x + dx * side / 2, y + dy * side / 2) for dx, dy in ((-1, -1), (1, -1), (1, 1), (-1, 1))],
-            facecolor=GOAL, edgecolor="none", zorder=5,
+            [
+                (x + dx * side / 2, y + dy * side / 2)
+                for dx, dy in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+            ],
+            facecolor=GOAL,
+            edgecolor="none",
+            zorder=5,
         )
     )
     axes.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal", xlabel="x [m]", ylabel="y [m]")
@@ -95,7 +100,9 @@ def draw_paths(scene: Scene, trials: list[Trial], path: Path, title: str) -> Non
         style = "-" if reached else "--"
         axes.plot(*trial.track.T, style, color=colour, linewidth=1.6, alpha=0.85, zorder=3)
         centre = (float(trial.track[0, 0]), float(trial.track[0, 1]))
-        axes.add_patch(Circle(centre, radius, facecolor="white", edgecolor=colour, lw=1.4, zorder=4))
+        axes.add_patch(
+            Circle(centre, radius, facecolor="white", edgecolor=colour, lw=1.4, zorder=4)
+        )
     handles = [
         Line2D([], [], marker="o", ls="", mfc="white", mec=INK, ms=9, label="start (robot's size)"),
         Line2D([], [], marker="s", ls="", color=GOAL, ms=8, label="goal"),
@@ -111,7 +118,7 @@ def _legend(figure: Figure, handles: list[Line2D]) -> None:
 
 
 def lattice(scene: Scene, spacing: float, clearance: float = 0.05) -> FloatArray:
-    """Return the places (n, 2) of a square lattice where the robot fits and reaches the goal [m]."""
+    """Return the places (n, 2) of a square lattice [m] where the robot fits and can go on."""
     x0, y0, x1, y1 = scene.free_space.bounds
     xs, ys = (np.arange(low + spacing / 4, high, spacing) for low, high in ((x0, x1), (y0, y1)))
     places = np.stack(np.meshgrid(xs, ys), axis=-1).reshape(-1, 2)

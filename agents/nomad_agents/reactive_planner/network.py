@@ -106,7 +106,7 @@ class Network:
                 store[name] = np.zeros((room, *own.shape[1:]), dtype=own.dtype)
                 store[name][:count] = array
         owners = arrays["category"]
-        if exemplars and not (0 <= owners.min() and owners.max() < categories):
+        if exemplars and not (owners.min() >= 0 and owners.max() < categories):
             raise ValueError("an exemplar belongs to no category")
         self._store, self._categories, self._exemplars = store, categories, exemplars
         self._refresh()

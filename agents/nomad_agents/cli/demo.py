@@ -1,0 +1,154 @@
+"""``nomad-mj demo``: learn the paper's room, compare, and show it."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from nomad_agents.agent import Agent
+from nomad_agents.cli.common import console, interruptible, output_file, path_finding, print_json
+from nomad_agents.cli.evaluate import format_metric, run_evaluation
+from nomad_agents.cli.train import run_training, training_report
+from nomad_agents.evaluation import Trial, draw_starts, summarise
+from nomad_agents.experiments.figures import draw_actions, draw_paths, lattice, lattice_actions
+from nomad_agents.reactive_planner import ConfigName, ReactivePlanner
+from nomad_agents.recording import record
+from nomad_agents.registry import find_config, make_agent
+from nomad_agents.training import Training, TrainingConfig
+from nomad_mj.envs import DEFAULT_ROBOT, PathFinding
+from nomad_mj.errors import RenderError
+
+ROOM = "paper_room"
+# Section 4 of the paper.
+PAPER = {
+    "reactions": "1424",
+    "plannings": "248",
+    "virtual_collisions": "74",
+    "bumper_contacts": "0",
+    "categories": "29",
+    "exemplars": "93",
+    "solved": "50",
+}
+LEARNING_ROWS = {
+    "reactions": "reactions while learning",
+    "plannings": "plannings while learning",
+    "virtual_collisions": "virtual collisions while learning",
+    "bumper_contacts": "bumper contacts while learning",
+    "categories": "categories",
+    "exemplars": "exemplars",
+}
+UNSEEN_ROWS = {
+    "success_rate": "unseen starts: goal reached",
+    "strict_success_rate": "unseen starts: no virtual collision",
+    "spl": "unseen starts: SPL",
+    "path_ratio_median": "unseen starts: path / shortest, median",
+}
+_LATTICE = 0.5  # [m] between the places of Fig 7
+
+
+@dataclass(frozen=True)
+class Demo:
+    """Train in the paper's room, print the table beside the paper's, write video and figures."""
+
+    config: ConfigName = "faithful"
+    """The paper's parameters, or better ones found since."""
+    seed: int = 0
+    """Of all randomness."""
+    starts: int = 100
+    """Unseen starts that the trained agent and the baselines are evaluated on."""
+    videos: int = 6
+    """Starts that the video shows."""
+    speed: float = 4.0
+    """Video time runs so many times faster than simulated time."""
+    out: str = "renders"
+    """Folder for paper_room.npz, paper_room.mp4, fig6.png and fig7.png."""
+    json: bool = False
+    """Print one line of JSON last on standard output."""
+
+    def run(self) -> int:
+        """Train, compare, draw and record; return the exit code."""
+        screen = console(json_wanted=self.json)
+        with path_finding(ROOM, DEFAULT_ROBOT) as env, interruptible():
+            path = output_file(self.out, ROOM, ".npz")
+            agent = ReactivePlanner(env.scene.robot.layout, find_config(self.config))
+            training = Training()
+            run_training(env, agent, TrainingConfig(self.seed), training, path, screen)
+            report = training_report(env, agent, training)
+            summaries = self._compare(env, agent, screen)
+            screen.print(_table(report, summaries))
+            trials = self._draw(env, agent, path.parent, screen)
+            shown = self._record(env, agent, trials, path.with_suffix(".mp4"), screen)
+        files = [path.name, "fig6.png", "fig7.png", *([f"{ROOM}.mp4"] if shown else [])]
+        screen.print(f"In {path.parent}: {', '.join(files)}", soft_wrap=True)
+        if self.json:
+            print_json({**report, **summaries[agent.name]})
+        return 0
+
+    def _compare(
+        self, env: PathFinding, agent: ReactivePlanner, screen: Console
+    ) -> dict[str, dict[str, Any]]:
+        """Return the metrics of the trained agent and of the baselines on unseen starts."""
+        starts = draw_starts(env, self.starts, self.seed)
+        agents: list[Agent] = [
+            agent,
+            *(make_agent(name, agent.layout, agent.config) for name in ("straight", "planner")),
+        ]
+        return {
+            each.name: summarise(env, run_evaluation(env, each, starts, self.seed, 100, screen))
+            for each in agents
+        }
+
+    def _draw(self, env: PathFinding, agent: Agent, folder: Path, screen: Console) -> list[Trial]:
+        """Write Figs 6 and 7; return the episodes of Fig 6."""
+        scene = env.scene
+        starts = scene.arena.starts[_spread(scene.arena.starts[:, :2], 12)]
+        trials = run_evaluation(env, agent, starts, self.seed, 100, screen)
+        draw_paths(scene, trials, folder / "fig6.png", "Paths from twelve starts after learning")
+        actions = lattice_actions(env, agent, lattice(scene, _LATTICE), self.seed)
+        draw_actions(
+            scene, actions, folder / "fig7.png", "The learnt action at a lattice of places"
+        )
+        return trials
+
+    def _record(
+        self, env: PathFinding, agent: Agent, trials: list[Trial], path: Path, screen: Console
+    ) -> bool:
+        """Write the video; return False, having said why, where there is no OpenGL."""
+        starts = [trial.start.tolist() for trial in trials[: self.videos]]
+        try:
+            with screen.status(f"recording {path.name}"):
+                record(env, agent, path, starts=starts, seed=self.seed, speed=self.speed)
+        except RenderError as error:
+            screen.print(f"no video: {error}", soft_wrap=True)
+            return False
+        return True
+
+
+def _spread(places: np.ndarray, count: int) -> list[int]:
+    """Return the indices of `count` of the places (n, 2) that lie far from each other."""
+    chosen = [0]
+    while len(chosen) < min(count, len(places)):
+        off = np.hypot(*(places[:, None] - places[chosen]).transpose(2, 0, 1)).min(axis=1)
+        chosen.append(int(np.argmax(off)))
+    return chosen
+
+
+def _table(report: dict[str, Any], summaries: dict[str, dict[str, Any]]) -> Table:
+    """Return the table paper | this run | straight to the goal | planner at every decision."""
+    learner = summaries[ReactivePlanner.name]
+    table = Table(title=f"{ROOM}: {learner['episodes']} unseen starts")
+    for heading in ("", "paper", "this run", "straight to the goal", "planner at every decision"):
+        table.add_column(heading, justify="left" if not heading else "right")
+    for key, label in LEARNING_ROWS.items():
+        table.add_row(label, PAPER[key], str(report[key]), "-", "-")
+    solved = f"{report['solved']}/{report['starts']}"
+    table.add_row("starts of the room solved", f"{PAPER['solved']}/50", solved, "-", "-")
+    for key, label in UNSEEN_ROWS.items():
+        row = [
+            format_metric(summaries[n][key]) for n in (ReactivePlanner.name, "straight", "planner")
+        ]
+        table.add_row(label, "-", *row)
+    return table
