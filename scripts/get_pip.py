@@ -5,6 +5,8 @@ pinned, and the pip it holds then follows the user's own pip configuration.
 """
 
 import hashlib
+import os
+import ssl
 import subprocess
 import sys
 import tempfile
@@ -17,7 +19,9 @@ SHA256 = "f3b60b20ffaadd4415ed7957212a38ac63fa4c5fa375bd0f4a797777940fad13"
 
 def main() -> None:
     """Download, check and install the wheel."""
-    with urllib.request.urlopen(URL, timeout=30) as response:
+    trusted = os.environ.get("PIP_CERT") or os.environ.get("REQUESTS_CA_BUNDLE")
+    context = ssl.create_default_context(cafile=trusted)
+    with urllib.request.urlopen(URL, timeout=30, context=context) as response:
         wheel: bytes = response.read()
     if hashlib.sha256(wheel).hexdigest() != SHA256:
         sys.exit(f"{URL} is not the file that was pinned")
@@ -33,4 +37,4 @@ if __name__ == "__main__":
     try:
         main()
     except (OSError, subprocess.CalledProcessError) as error:
-        sys.exit(str(error))
+        sys.exit(f"{URL}: {error}")
