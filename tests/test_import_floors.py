@@ -1,0 +1,120 @@
+"""Imports go downward only, and an agent's core never meets the physics engine."""
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+# A module may import what lies on a lower floor, and its own package.
+FLOORS = (
+    ("types", "errors"),
+    ("geometry", "_gl_probe"),
+    ("perception", "motion", "_gl"),
+    ("assets", "robots", "arenas"),
+    ("scene",),
+    ("tasks",),
+    ("envs",),
+    ("video",),
+)
+FLOOR = {part: floor for floor, parts in enumerate(FLOORS) for part in parts}
+PURE = {part for parts in FLOORS[:3] for part in parts if not part.startswith("_")}
+CORE = ("agent", "reactive_planner", "baselines")
+LIBRARY = sorted((ROOT / "nomad_mj").rglob("*.py"))
+AGENTS = sorted((ROOT / "agents" / "nomad_agents").rglob("*.py"))
+
+
+def imports(path: Path) -> Iterator[str]:
+    """Yield the dotted name of every module that a file imports, inside functions too."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0 and node.module, f"{path}: relative import"
+            if node.module in ("nomad_mj", "nomad_agents"):
+                yield from (f"{node.module}.{alias.name}" for alias in node.names)
+            else:
+                yield node.module
+
+
+def part_of(path: Path, top: Path) -> str:
+    """Return the part of a package that a file belongs to: its module or subpackage."""
+    return path.relative_to(top).parts[0].removesuffix(".py")
+
+
+@pytest.mark.parametrize("path", LIBRARY, ids=lambda path: str(path.relative_to(ROOT)))
+def test_the_library_imports_downward_only(path: Path) -> None:
+    own = part_of(path, ROOT / "nomad_mj")
+    for module in imports(path):
+        top, _, rest = module.partition(".")
+        assert top != "nomad_agents", f"the library knows no agent, but imports {module}"
+        if top != "nomad_mj" or own == "__init__":
+            continue
+        imported = rest.partition(".")[0]
+        assert imported in FLOOR, f"{module}: not on any floor"
+        assert imported == own or FLOOR[imported] < FLOOR[own], f"{own} must not import {module}"
+
+
+@pytest.mark.parametrize("path", LIBRARY, ids=lambda path: str(path.relative_to(ROOT)))
+def test_the_lowest_floors_are_numpy_and_nothing_else(path: Path) -> None:
+    if part_of(path, ROOT / "nomad_mj") in PURE:
+        others = {module.partition(".")[0] for module in imports(path)}
+        others -= {"nomad_mj", "numpy", "typing_extensions", *sys.stdlib_module_names}
+        assert not others
+
+
+@pytest.mark.parametrize("path", AGENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_the_core_of_an_agent_sees_perception_and_motion_only(path: Path) -> None:
+    if part_of(path, ROOT / "agents" / "nomad_agents") not in CORE:
+        return
+    for module in imports(path):
+        top, _, rest = module.partition(".")
+        part = rest.partition(".")[0]
+        if top == "nomad_mj":
+            assert part in PURE, f"an agent's core must not import {module}"
+        elif top == "nomad_agents":
+            assert part in CORE, f"an agent's core must not import {module}"
+        else:
+            assert top == "numpy" or top in sys.stdlib_module_names, module
+
+
+def test_agents_is_a_source_root_and_no_package() -> None:
+    assert not (ROOT / "agents" / "__init__.py").exists()
+
+
+def test_an_agent_perceives_and_decides_where_there_is_no_mujoco() -> None:
+    """Run without the engine, for what the imports of imports might hide."""
+    code = f"""
+import importlib.abc, sys, types
+class Blocked(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in ("mujoco", "dm_control", "dm_env", "shapely", "scipy"):
+            raise ImportError("blocked: " + name)
+sys.meta_path.insert(0, Blocked())
+package = types.ModuleType("nomad_mj")  # its __init__ imports the whole library
+package.__path__ = [{str(ROOT / "nomad_mj")!r}]
+sys.modules["nomad_mj"] = package
+import numpy as np
+from nomad_mj.perception import SituationSpec, perceive
+from nomad_mj.types import RangeRing, SensorLayout
+from nomad_agents import baselines, reactive_planner
+from nomad_agents.reactive_planner import ReactivePlanner, ReactivePlannerConfig
+layout = SensorLayout(0.2, (RangeRing("ir", tuple(np.arange(8) * np.pi / 4), 0.4, 0.0, 1.5),))
+agent = ReactivePlanner(layout, ReactivePlannerConfig())
+agent.start_episode()
+percept = perceive(np.ones(8), 0.0, np.array([2.0, 1.0]), layout, agent.situation)
+decision = agent.act(percept, np.random.default_rng(0))
+assert np.abs(np.asarray(decision.action)).max() <= 1
+print("decided")
+"""
+    ran = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=ROOT / "agents",
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ran.stdout == "decided\n", ran.stderr
