@@ -40,11 +40,9 @@ class OdometryNoise:
 
     Attributes
     ----------
-    distance : float
-        Standard deviation of the error of a driven distance, as a fraction of it.
-    heading : float
-        Standard deviation of the heading's drift after 1 m [rad]; grows with the square root of
-        the distance.
+    distance, heading : float
+        Standard deviations of the distance [m] and of the heading [rad] after 1 m; they grow with
+        the square root of the distance.
     position : float
         Each coordinate reported is wrong by U[-position, position] [m], anew at each reading
         (Fig 8 of the paper).

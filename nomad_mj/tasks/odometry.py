@@ -32,8 +32,9 @@ class Odometry:
         """Take in a control step: distance driven [m], wheels' and turret's angle [rad]."""
         if self._drifts and distance:
             error, turn = self._rng.normal(size=2).tolist()
-            distance *= 1 + self._noise.distance * error
-            self._drift += self._noise.heading * turn * math.sqrt(abs(distance))
+            root = math.sqrt(abs(distance))  # variances add up, whatever the length of a step
+            distance += self._noise.distance * error * root
+            self._drift += self._noise.heading * turn * root
         heading = steer + self._drift
         middle = (self.heading + heading) / 2
         self.x += distance * math.cos(middle)
