@@ -22,7 +22,7 @@ die() {
 # --- apt ----------------------------------------------------------------------------------------
 as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo -n "$@"; fi; }
 may_apt() { command -v apt-get >/dev/null && as_root true 2>/dev/null; }
-apt() {
+apt_get() {
   as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -y -o DPkg::Lock::Timeout=60 \
     -o Acquire::Retries=1 -o Acquire::http::Timeout=15 -o Acquire::https::Timeout=15 \
     --no-install-recommends "$@" </dev/null >/dev/null 2>&1
@@ -38,10 +38,10 @@ apt_install() {
   for package in "$@"; do
     if installed "$package"; then continue; fi
     say "installing $package"
-    if apt install "$package"; then continue; fi
+    if apt_get install "$package"; then continue; fi
     if [ -z "$updated" ]; then
       updated=yes
-      if apt update && apt install "$package"; then continue; fi
+      if apt_get update && apt_get install "$package"; then continue; fi
     fi
     say "apt could not install $package; going on without it"
   done
