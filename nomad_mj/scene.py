@@ -81,10 +81,10 @@ def _sample_per_control_step(spec: mujoco.MjSpec, sub_steps: int) -> None:
         if sensor.type == mujoco.mjtSensor.mjSENS_RANGEFINDER:
             sensor.interval = [CONTROL_TIMESTEP, 0.0]
             sensor.nsample = max(sensor.nsample, 1)  # without a sample kept there is no interval
-        elif sensor.type == mujoco.mjtSensor.mjSENS_TOUCH or sensor.name == (
-            PREFIX + "translate_encoder"
-        ):
+        elif sensor.type == mujoco.mjtSensor.mjSENS_TOUCH:
             sensor.nsample = sub_steps
+        elif sensor.name == PREFIX + "translate_encoder":
+            sensor.nsample = sub_steps - 1  # all but the last, which is in sensordata itself
 
 
 def _compile(room: mujoco.MjSpec, robot: mujoco.MjSpec) -> mujoco.MjModel:

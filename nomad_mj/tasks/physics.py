@@ -7,7 +7,7 @@ import numpy as np
 from dm_control.mujoco import Physics, wrapper
 from dm_control.rl.control import PhysicsError
 
-from nomad_mj.robots import JOINTS, PREFIX, RobotDescription
+from nomad_mj.robots import ENCODERS, JOINTS, PREFIX, RobotDescription
 from nomad_mj.scene import Scene
 from nomad_mj.types import FloatArray, IntArray, Pose
 
@@ -64,12 +64,13 @@ class NavigationPhysics(Physics):
         self._qpos_address = np.array([int(joint.qposadr[0]) for joint in joints])
         servo = model.actuator(PREFIX + "steer")
         self._steer_servo = int(servo.actadr[0])  # -1 where the servo has no memory
+        belts = (model.eq_type == mujoco.mjtEq.mjEQ_JOINT) & (model.eq_obj2id == joints[2].id)
+        self._wheels: IntArray = model.jnt_qposadr[model.eq_obj1id[belts]]
         touch = [model.sensor(PREFIX + name) for name in self.robot.bumpers]
         self._touch = _samples(model, [int(s.id) for s in touch])
         self._speed = _samples(model, [int(model.sensor(PREFIX + "translate_encoder").id)])[:, 0]
         self._timestep = float(model.opt.timestep)
-        angles = ("steer_encoder", "turret_encoder")
-        self._angles = [int(model.sensor(PREFIX + name).adr[0]) for name in angles]
+        self._encoders = [int(model.sensor(PREFIX + name).adr[0]) for name in ENCODERS]
 
     def reset(self, keyframe_id: int | None = None) -> None:
         """Set the simulation to its initial state, without computing any sensor.
@@ -97,6 +98,7 @@ class NavigationPhysics(Physics):
     def place(self, pose: Pose) -> None:
         """Put the robot at `pose`, its wheels along the heading, its turret looking along +x."""
         self.data.qpos[self._qpos_address[:3]] = pose
+        self.data.qpos[self._wheels] = pose.heading  # else their belts would wrench them there
         if self._steer_servo >= 0:  # else the servo would turn the wheels back to zero
             self.data.act[self._steer_servo] = pose.heading
 
@@ -117,9 +119,9 @@ class NavigationPhysics(Physics):
 
     def encoders(self) -> FloatArray:
         """Return distance driven since the last control step [m], steer and turret angle [rad]."""
-        driven = sum(self._history.take(self._speed).tolist()) * self._timestep
-        steer, turret = self._angles
-        return np.array([driven, self._sensordata.item(steer), self._sensordata.item(turret)])
+        speed, steer, turret = (self._sensordata.item(address) for address in self._encoders)
+        driven = (sum(self._history.take(self._speed).tolist()) + speed) * self._timestep
+        return np.array([driven, steer, turret])
 
     def pose(self) -> Pose:
         """Return the true pose: where the base is and where the wheels point."""
