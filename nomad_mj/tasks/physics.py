@@ -71,6 +71,7 @@ class NavigationPhysics(Physics):
         self._speed = _samples(model, [int(model.sensor(PREFIX + "translate_encoder").id)])[:, 0]
         self._timestep = float(model.opt.timestep)
         self._encoders = [int(model.sensor(PREFIX + name).adr[0]) for name in ENCODERS]
+        mujoco.mj_step1(model, data)  # dm_control has just computed a copy with its motors off
 
     def reset(self, keyframe_id: int | None = None) -> None:
         """Set the simulation to its initial state, without computing any sensor.
