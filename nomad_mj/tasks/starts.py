@@ -66,5 +66,8 @@ def _check(scene: Scene, start: Sequence[float]) -> Pose:
             f"robot of radius {radius:g} m; the floor is {scene.plan.describe_bounds()}"
         )
     if not shapely.intersects_xy(scene.free_space, *values[:2]):
-        raise StartError(f"{where} is cut off from the goal for a robot of radius {radius:g} m")
+        raise StartError(
+            f"{where} is cut off from the goal for a robot of radius {radius:g} m; the floor is "
+            f"{scene.plan.describe_bounds()}"
+        )
     return pose
