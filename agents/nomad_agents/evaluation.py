@@ -77,9 +77,11 @@ def read_starts(path: Path) -> FloatArray:
         No such file, or a line that is neither.
     """
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not text"
+        lines = path.expanduser().read_text(encoding="utf-8-sig").splitlines()
+    except UnicodeDecodeError:
+        raise StartError(f"starts file {str(path)!r} is not text") from None
+    except (OSError, RuntimeError) as error:  # RuntimeError: a home that there is not
+        reason = getattr(error, "strerror", None) or error
         raise StartError(f"starts file {str(path)!r} cannot be read: {reason}") from None
     starts: list[list[float]] = []
     for number, line in enumerate(lines, 1):
@@ -132,9 +134,13 @@ def evaluate(
 
     Raises
     ------
+    ConfigError
+        A seed below 0, or no decisions.
     StartError
         A start inside an obstacle or cut off from the goal; nothing has been run then.
     """
+    if seed < 0 or max_decisions < 1:
+        raise ConfigError(f"seed {seed}, max_decisions {max_decisions}: must be at least 0 and 1")
     for start in starts:
         resolve_start(env.scene, start, np.random.default_rng(0))
     scene = env.scene

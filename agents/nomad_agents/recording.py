@@ -31,7 +31,8 @@ def _caption(number: int, decision: Decision, z: float | None) -> Caption:
         fields.append(("category", str(decision.category)))
     if z is not None:
         fields.append(("last z", f"{round(z, 2) + 0.0:.2f}"))  # never "-0.00"
-    return Caption(decision.kind, _COLOURS[decision.kind], tuple(fields))
+    kind = "nearest" if decision.kind == "reacted" and decision.unmatched else decision.kind
+    return Caption(kind, _COLOURS.get(kind, GREY), tuple(fields))
 
 
 def _narrator(

@@ -40,8 +40,13 @@ def find_agent(name_or_path: str, layout: SensorLayout, config: ReactivePlannerC
     """
     if name_or_path in AGENTS:
         return make_agent(name_or_path, layout, config)
-    path = Path(name_or_path).expanduser()
-    if path.suffix != ".npz" and not path.exists():
+    path = Path(name_or_path)
+    try:
+        path = path.expanduser()
+        exists = path.exists()
+    except (OSError, RuntimeError):  # a name too long, a home that there is not
+        exists = False
+    if path.suffix != ".npz" and not exists:
         raise UnknownNameError("agent", name_or_path, [*AGENTS, "a checkpoint file, .npz"])
     checkpoint = load_checkpoint(path)
     if checkpoint.layout != layout:

@@ -8,7 +8,8 @@ between any two episodes and go on to the same bits.
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -45,6 +46,8 @@ class TrainingConfig:
     def __post_init__(self) -> None:
         if self.seed < 0:
             raise ConfigError(f"seed {self.seed}: must be 0 or more")
+        if self.max_decisions < 0:
+            raise ConfigError(f"max_decisions {self.max_decisions}: must be 0 (no limit) or more")
         for name in ("max_passes", "episode_decisions", "test_decisions"):
             if getattr(self, name) < 1:
                 raise ConfigError(f"{name} {getattr(self, name)}: must be 1 or more")
@@ -101,6 +104,8 @@ def train(
 ) -> Training:
     """Train until done or given up; `training` says from where on, and is brought up to date.
 
+    What is raised within an episode, Ctrl-C too, leaves both as they were before that episode.
+
     Parameters
     ----------
     env, agent
@@ -116,11 +121,18 @@ def train(
         if config.max_decisions and training.decisions >= config.max_decisions:
             break
         began = time.perf_counter()
-        if training.testing:
-            _test(env, agent, config, training)
-        else:
-            _learn(env, agent, config, training)
-        _advance(training, starts)
+        before = replace(training), agent.network.arrays(), agent.plannings
+        try:
+            if training.testing:
+                _test(env, agent, config, training)
+            else:
+                _learn(env, agent, config, training)
+            _advance(training, starts)
+        except BaseException:  # half an episode learnt would not go on to the same bits
+            vars(training).update(vars(before[0]))
+            agent.network.restore(before[1])
+            agent.plannings = before[2]
+            raise
         training.wall_s += time.perf_counter() - began
         if after_episode is not None:
             after_episode(training)
@@ -177,3 +189,22 @@ def _advance(training: Training, starts: int) -> None:
         training.done = training.solved == starts
         training.passes += not training.done
     training.testing = not training.testing
+
+
+def training_report(env: PathFinding, agent: ReactivePlanner, training: Training) -> dict[str, Any]:
+    """Return what `nomad-mj train --json` prints."""
+    # Given up after a test, the training stands before a pass that it never began.
+    waiting = not (training.done or training.testing or training.next_start)
+    return {
+        "solved": training.solved,
+        "starts": len(env.scene.arena.starts),
+        "reactions": training.reactions,
+        "plannings": training.plannings,
+        "virtual_collisions": training.virtual_collisions,
+        "bumper_contacts": training.bumper_contacts,
+        "categories": len(agent.network.value),
+        "exemplars": len(agent.network.category),
+        "passes": training.passes - waiting,
+        "wall_s": round(training.wall_s, 3),
+        "sim_s": round(training.sim_s, 3),
+    }

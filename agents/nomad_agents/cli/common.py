@@ -7,7 +7,7 @@ import sys
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from rich.console import Console
 
@@ -35,10 +35,13 @@ def path_finding(room: str, robot: str, **task: Any) -> Generator[PathFinding, N
 
 def print_json(values: Mapping[str, Any]) -> None:
     """Print one line of JSON; what is not a number becomes null."""
-    clean = {
-        k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in values.items()
-    }
-    print(json.dumps(clean), flush=True)
+    print(json.dumps(_clean(values), allow_nan=False), flush=True)
+
+
+def _clean(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {key: _clean(inner) for key, inner in cast(Mapping[str, Any], value).items()}
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def output_file(out: str, default_name: str, suffix: str) -> Path:
@@ -49,18 +52,20 @@ def output_file(out: str, default_name: str, suffix: str) -> Path:
     OutputError
         A name with another suffix, or a place that cannot be written.
     """
-    path = Path(out).expanduser()
+    path = Path(out)
     if path.suffix in SUFFIXES and path.suffix != suffix:
         raise OutputError(f"--out {out!r}: this writes {suffix}; give such a file or a folder")
-    if path.suffix != suffix or path.is_dir():
-        path = path / f"{default_name}{suffix}"
     try:
+        path = path.expanduser()
+        if path.suffix != suffix or path.is_dir():
+            path = path / f"{default_name}{suffix}"
         path.parent.mkdir(parents=True, exist_ok=True)
         probe = path.parent / f".{path.name}.writable"
         probe.touch()
         probe.unlink()
-    except OSError as error:
-        raise OutputError(f"cannot write {str(path)!r}: {error.strerror}") from None
+    except (OSError, RuntimeError) as error:  # RuntimeError: a home that there is not
+        reason = getattr(error, "strerror", None) or error
+        raise OutputError(f"cannot write {str(path)!r}: {reason}") from None
     return path
 
 

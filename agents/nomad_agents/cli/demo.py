@@ -11,13 +11,13 @@ from rich.table import Table
 from nomad_agents.agent import Agent
 from nomad_agents.cli.common import console, interruptible, output_file, path_finding, print_json
 from nomad_agents.cli.evaluate import format_metric, run_evaluation
-from nomad_agents.cli.train import run_training, training_report
+from nomad_agents.cli.train import run_training
 from nomad_agents.evaluation import Trial, draw_starts, summarise
 from nomad_agents.experiments.figures import draw_actions, draw_paths, lattice, lattice_actions
 from nomad_agents.reactive_planner import ConfigName, ReactivePlanner
 from nomad_agents.recording import record
 from nomad_agents.registry import find_config, make_agent
-from nomad_agents.training import Training, TrainingConfig
+from nomad_agents.training import Training, TrainingConfig, training_report
 from nomad_mj.envs import DEFAULT_ROBOT, PathFinding
 from nomad_mj.errors import RenderError
 
@@ -27,24 +27,23 @@ PAPER = {
     "reactions": "1424",
     "plannings": "248",
     "virtual_collisions": "74",
-    "bumper_contacts": "0",
+    "bumper_contacts": "",
     "categories": "29",
     "exemplars": "93",
-    "solved": "50",
 }
 LEARNING_ROWS = {
-    "reactions": "reactions while learning",
-    "plannings": "plannings while learning",
-    "virtual_collisions": "virtual collisions while learning",
-    "bumper_contacts": "bumper contacts while learning",
+    "reactions": "reactions",
+    "plannings": "plannings",
+    "virtual_collisions": "virtual collisions",
+    "bumper_contacts": "bumper contacts",
     "categories": "categories",
     "exemplars": "exemplars",
 }
 UNSEEN_ROWS = {
-    "success_rate": "unseen starts: goal reached",
-    "strict_success_rate": "unseen starts: no virtual collision",
-    "spl": "unseen starts: SPL",
-    "path_ratio_median": "unseen starts: path / shortest, median",
+    "success_rate": "goal reached",
+    "strict_success_rate": "without virtual collision",
+    "spl": "SPL",
+    "path_ratio_median": "path / shortest, median",
 }
 _LATTICE = 0.5  # [m] between the places of Fig 7
 
@@ -78,13 +77,13 @@ class Demo:
             run_training(env, agent, TrainingConfig(self.seed), training, path, screen)
             report = training_report(env, agent, training)
             summaries = self._compare(env, agent, screen)
-            screen.print(_table(report, summaries))
+            screen.print(_table({**report, "seed": self.seed}, summaries))
             trials = self._draw(env, agent, path.parent, screen)
             shown = self._record(env, agent, trials, path.with_suffix(".mp4"), screen)
         files = [path.name, "fig6.png", "fig7.png", *([f"{ROOM}.mp4"] if shown else [])]
         screen.print(f"In {path.parent}: {', '.join(files)}", soft_wrap=True)
         if self.json:
-            print_json({**report, **summaries[agent.name]})
+            print_json({"training": report, "unseen": summaries})
         return 0
 
     def _compare(
@@ -97,7 +96,7 @@ class Demo:
             *(make_agent(name, agent.layout, agent.config) for name in ("straight", "planner")),
         ]
         return {
-            each.name: summarise(env, run_evaluation(env, each, starts, self.seed, 100, screen))
+            each.name: summarise(env, run_evaluation(env, each, starts, self.seed, 60, screen))
             for each in agents
         }
 
@@ -138,17 +137,16 @@ def _spread(places: np.ndarray, count: int) -> list[int]:
 
 def _table(report: dict[str, Any], summaries: dict[str, dict[str, Any]]) -> Table:
     """Return the table paper | this run | straight to the goal | planner at every decision."""
-    learner = summaries[ReactivePlanner.name]
-    table = Table(title=f"{ROOM}: {learner['episodes']} unseen starts")
-    for heading in ("", "paper", "this run", "straight to the goal", "planner at every decision"):
-        table.add_column(heading, justify="left" if not heading else "right")
+    table = Table(title=f"{ROOM}, seed {report['seed']}")
+    for heading in ("", "paper", "this run", "straight to\nthe goal", "planner at every\ndecision"):
+        table.add_column(heading, justify="right" if heading else "left")
+    table.add_row("while learning")
+    solved = f"{report['solved']} of {report['starts']}"
+    table.add_row("  starts solved", "50 of 50", solved)
     for key, label in LEARNING_ROWS.items():
-        table.add_row(label, PAPER[key], str(report[key]), "-", "-")
-    solved = f"{report['solved']}/{report['starts']}"
-    table.add_row("starts of the room solved", f"{PAPER['solved']}/50", solved, "-", "-")
+        table.add_row(f"  {label}", PAPER[key], str(report[key]))
+    table.add_section()
+    table.add_row(f"on {summaries[ReactivePlanner.name]['episodes']} unseen starts")
     for key, label in UNSEEN_ROWS.items():
-        row = [
-            format_metric(summaries[n][key]) for n in (ReactivePlanner.name, "straight", "planner")
-        ]
-        table.add_row(label, "-", *row)
+        table.add_row(f"  {label}", "", *(format_metric(s[key]) for s in summaries.values()))
     return table

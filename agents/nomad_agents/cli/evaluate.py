@@ -79,9 +79,11 @@ class Evaluate:
 
 def choose_starts(env: PathFinding, starts: str, seed: int) -> FloatArray:
     """Return the starts (n, 3) that `--starts` means: a number of them, or those of a file."""
-    if starts.isdigit():
-        return draw_starts(env, int(starts), seed)
-    return read_starts(Path(starts))
+    try:
+        count = int(starts)
+    except ValueError:
+        return read_starts(Path(starts))
+    return draw_starts(env, count, seed)
 
 
 def run_evaluation(

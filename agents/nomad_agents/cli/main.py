@@ -13,6 +13,7 @@ from nomad_agents.cli.demo import Demo
 from nomad_agents.cli.evaluate import Evaluate
 from nomad_agents.cli.listing import List
 from nomad_agents.cli.record import Record
+from nomad_agents.cli.reproduce import Reproduce
 from nomad_agents.cli.train import Train
 from nomad_mj.errors import NomadError
 
@@ -20,6 +21,7 @@ Command = (
     Annotated[Train, tyro.conf.subcommand("train")]
     | Annotated[Evaluate, tyro.conf.subcommand("evaluate")]
     | Annotated[Record, tyro.conf.subcommand("record")]
+    | Annotated[Reproduce, tyro.conf.subcommand("reproduce")]
     | Annotated[List, tyro.conf.subcommand("list")]
     | Annotated[Bench, tyro.conf.subcommand("bench")]
     | Annotated[Demo, tyro.conf.subcommand("demo")]
@@ -28,7 +30,7 @@ Command = (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; return 0, or 2 for a user's mistake, or 130 if interrupted."""
-    command: Train | Evaluate | Record | List | Bench | Demo = tyro.cli(
+    command: Train | Evaluate | Record | Reproduce | List | Bench | Demo = tyro.cli(
         Command,  # pyright: ignore[reportArgumentType]
         prog="nomad-mj",
         description="A simulated Nomad 200 learns to find its goal.",

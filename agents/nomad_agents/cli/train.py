@@ -12,7 +12,7 @@ from nomad_agents.cli.common import console, interruptible, output_file, path_fi
 from nomad_agents.cli.progress import TrainingProgress
 from nomad_agents.reactive_planner import ConfigName, ReactivePlanner
 from nomad_agents.registry import AGENTS, find_config
-from nomad_agents.training import Training, TrainingConfig, train
+from nomad_agents.training import Training, TrainingConfig, train, training_report
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, PathFinding
 from nomad_mj.errors import CheckpointError, ConfigError, UnknownNameError
 
@@ -117,23 +117,6 @@ def run_training(
             train(env, agent, settings, training, after_episode)
         finally:
             save()
-
-
-def training_report(env: PathFinding, agent: ReactivePlanner, training: Training) -> dict[str, Any]:
-    """Return what `nomad-mj train --json` prints."""
-    return {
-        "solved": training.solved,
-        "starts": len(env.scene.arena.starts),
-        "reactions": training.reactions,
-        "plannings": training.plannings,
-        "virtual_collisions": training.virtual_collisions,
-        "bumper_contacts": training.bumper_contacts,
-        "categories": len(agent.network.value),
-        "exemplars": len(agent.network.category),
-        "passes": training.passes,
-        "wall_s": round(training.wall_s, 3),
-        "sim_s": round(training.sim_s, 3),
-    }
 
 
 def _verdict(report: dict[str, Any], training: Training) -> str:

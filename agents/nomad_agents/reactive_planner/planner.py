@@ -12,6 +12,7 @@ from nomad_mj.types import FloatArray
 
 _STEPS = np.linspace(-1.0, 1.0, 9)
 ACTIONS: FloatArray = np.stack(np.meshgrid(_STEPS, _STEPS, indexing="ij"), axis=-1).reshape(-1, 2)
+ACTIONS.setflags(write=False)  # plans are rows of it
 
 
 class Plan(NamedTuple):
