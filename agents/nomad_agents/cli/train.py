@@ -4,10 +4,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import cattrs
 from rich.console import Console
 
-from nomad_agents.checkpoint import load_checkpoint, save_checkpoint
+from nomad_agents.checkpoint import load_checkpoint, save_checkpoint, structure
 from nomad_agents.cli.common import console, interruptible, output_file, path_finding, print_json
 from nomad_agents.cli.progress import TrainingProgress
 from nomad_agents.reactive_planner import ConfigName, ReactivePlanner
@@ -67,23 +66,25 @@ class Train:
         if not (self.resume and path.exists()):
             return ReactivePlanner(env.scene.robot.layout, config), Training()
         checkpoint = load_checkpoint(path)
-        wanted = (env.scene.arena.name, env.scene.robot.name, self.seed, config)
+        robot = env.scene.robot
+        wanted = (env.scene.arena.name, robot.name, robot.layout, self.seed, config)
         found = (
             checkpoint.room,
             checkpoint.robot,
+            checkpoint.layout,
             checkpoint.training.get("seed"),
             checkpoint.agent.config,
         )
         for what, mine, theirs in zip(
-            ("room", "robot", "seed", "config"), wanted, found, strict=True
+            ("room", "robot", "set of sensors", "seed", "config"), wanted, found, strict=True
         ):
             if mine != theirs:
-                told = "" if what == "config" else f": {theirs}, not {mine}"
+                told = f": {theirs}, not {mine}" if isinstance(mine, str | int) else ""
                 raise CheckpointError(f"cannot resume {str(path)!r}: it is of another {what}{told}")
         state = {k: v for k, v in checkpoint.training.items() if k != "seed"}
         try:
-            return checkpoint.agent, cattrs.structure(state, Training)
-        except cattrs.BaseValidationError:
+            return checkpoint.agent, structure(state, Training)
+        except Exception:
             raise CheckpointError(f"checkpoint {str(path)!r} holds no state of training") from None
 
 
