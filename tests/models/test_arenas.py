@@ -10,7 +10,7 @@ from scipy.stats import qmc
 
 from nomad_mj.arenas import Arena, FloorPlan, Geodesic, check_arena
 from nomad_mj.arenas.halton import halton_starts
-from nomad_mj.assets import models_dir, rooms
+from nomad_mj.assets import list_rooms, models_dir
 from nomad_mj.types import FloatArray
 
 RADIUS, HEIGHT, CLEARANCE = 0.265, 0.9, 0.12
