@@ -75,7 +75,7 @@ def record(
     max_decisions: int = 100,
     explore: np.random.Generator | None = None,
 ) -> Recording:
-    """Record one episode from each start, one after another, and return what they took.
+    """Record one episode from each start and return what they took.
 
     Parameters
     ----------
@@ -87,10 +87,8 @@ def record(
         As of `PathFinding.reset`.
     seed : int
         Of the environment.
-    view, speed, fps, size
-        As of `EpisodeRecorder`.
-    max_decisions, explore
-        As of `run_episode`.
+    view, speed, fps, size, max_decisions, explore
+        As of `EpisodeRecorder` and `run_episode`.
 
     Raises
     ------
@@ -98,10 +96,11 @@ def record(
         An option, a start or a path that is wrong; no OpenGL.
     """
     episodes: list[Episode] = []
+    count = len(starts)
     title = f"{agent.name} in {env.scene.arena.name}".replace("_", " ")
     with EpisodeRecorder(env, path, view=view, size=size, fps=fps, speed=speed) as recorder:
-        for i, stream in enumerate(np.random.SeedSequence(seed).spawn(len(starts))):
-            subtitle = f"start {i + 1} of {len(starts)}" if len(starts) > 1 else ""
+        for i, stream in enumerate(np.random.SeedSequence(seed).spawn(count)):
+            subtitle = f"start {i + 1} of {count}" if count > 1 else ""
             episode = run_episode(
                 env,
                 agent,

@@ -12,6 +12,7 @@ from nomad_mj.types import FloatArray
 _DISTANCE = 4.3  # [m] from the chase camera to what it looks at
 _AHEAD = 0.8  # [m] before the robot that it looks at
 _HEIGHT = 0.35  # [m] above the floor that it looks at
+_WALL = 1.0  # [m] that walls are high, roughly
 _CLIMBS = (33.0, 39.0, 45.0, 51.0, 57.0, 63.0, 69.0)  # [deg] above the horizon
 _SWING = 2.2  # [rad/s] of a critically damped swing
 _RISE = 1.6  # [1/s] with which it climbs over walls
@@ -24,21 +25,21 @@ def _free_camera() -> mujoco.MjvCamera:
 
 
 def _room_camera(scene: Scene, elevation: float) -> mujoco.MjvCamera:
-    """Return a camera that sees the whole floor plan from `elevation` [deg] above the horizon."""
+    """Return a camera that sees all of the floor plan from `elevation` [deg] up."""
     x0, y0, x1, y1 = scene.plan.bounds
     if not np.isfinite(x0):  # nothing stands in the room
         places = np.concatenate([scene.arena.starts[:, :2], scene.arena.goal[None]])
         (x0, y0), (x1, y1) = places.min(axis=0) - 1.0, places.max(axis=0) + 1.0
-    camera = _free_camera()
-    camera.lookat = np.array([(x0 + x1) / 2, (y0 + y1) / 2, 0.0])
-    camera.azimuth, camera.elevation = 90.0, -elevation
+    middle = np.array([(x0 + x1) / 2, (y0 + y1) / 2, 0.0])
+    corners = np.array([[x, y, z] for x in (x0, x1) for y in (y0, y1) for z in (0.0, _WALL)])
+    corners -= middle
+    sin, cos = math.sin(math.radians(elevation)), math.cos(math.radians(elevation))
+    depth = corners @ np.array([0.0, cos, -sin])
+    aside = np.maximum(np.abs(corners[:, 0]), np.abs(corners @ np.array([0.0, sin, cos])))
     tangent = math.tan(math.radians(float(scene.model.vis.global_.fovy)) / 2)
-    climb = math.radians(elevation)
-    half_x, half_y = (x1 - x0) / 2, (y1 - y0) / 2
-    # The near edge of the floor is closer to the camera, and so looks larger.
-    along = half_y * math.sin(climb) / tangent + half_y * math.cos(climb)
-    across = half_x / tangent + half_y * math.cos(climb)
-    camera.distance = 1.06 * max(along, across)
+    camera = _free_camera()
+    camera.lookat, camera.azimuth, camera.elevation = middle, 90.0, -elevation
+    camera.distance = float(np.max(1.04 * aside / tangent - depth))
     return camera
 
 

@@ -1,5 +1,6 @@
 """An OpenGL picture of several panes, read back as an array."""
 
+import threading
 import weakref
 from collections.abc import Callable
 from typing import Any
@@ -7,11 +8,13 @@ from typing import Any
 import mujoco
 import numpy as np
 import numpy.typing as npt
+from dm_control._render import base
 
 from nomad_mj._gl import require_gl
 from nomad_mj.errors import RenderError
 from nomad_mj.video.layout import Layout, Pane
 from nomad_mj.video.marks import Marks
+from nomad_mj.video.palette import GROUND
 
 Image = npt.NDArray[np.uint8]
 """Rows from the top, (height, width, 3)."""
@@ -26,11 +29,22 @@ def scene_option() -> mujoco.MjvOption:
     return option
 
 
+def _take_turns() -> None:
+    """Let dm_control make its own context current again when it next draws in this thread.
+
+    It remembers which of its contexts was current last and trusts that nobody else draws.
+    """
+    thread = threading.current_thread()
+    context = getattr(base, "_CURRENT_CONTEXT_FOR_THREAD", {}).pop(thread, None)
+    getattr(base, "_CURRENT_THREAD_FOR_CONTEXT", {}).pop(context, None)
+
+
 def _free(gl: Any, context: Any) -> None:
     # The OpenGL objects of a context that is not current would be some other context's.
     gl.make_current()
     context.free()
     gl.free()
+    _take_turns()
 
 
 class Canvas:
@@ -54,6 +68,8 @@ class Canvas:
         self._model = model
         self._panes = layout.panes
         width, height = layout.size
+        area = sum(pane.box.width * pane.box.height for pane in layout.panes)
+        self._covered = area == width * height
         self._option = scene_option()
         self._scene = mujoco.MjvScene(model, _MOST_GEOMS)
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = 0
@@ -92,6 +108,9 @@ class Canvas:
         """
         self._gl.make_current()
         height, width, _ = self._pixels.shape
+        whole = mujoco.MjrRect(0, 0, width, height)
+        if not self._covered:
+            mujoco.mjr_rectangle(whole, *GROUND, 1.0)
         for pane in self._panes:
             x, y, pane_width, pane_height = pane.box
             mujoco.mjv_updateScene(
@@ -106,6 +125,6 @@ class Canvas:
             decorate(self._marks, pane)
             rect = mujoco.MjrRect(x, height - y - pane_height, pane_width, pane_height)
             mujoco.mjr_render(rect, self._scene, self._context)
-        whole = mujoco.MjrRect(0, 0, width, height)
         mujoco.mjr_readPixels(self._pixels, None, whole, self._context)
+        _take_turns()
         return np.ascontiguousarray(self._pixels[::-1])

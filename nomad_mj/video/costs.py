@@ -82,7 +82,7 @@ def frame_costs(
     frames : int
         Of each kind.
     view : str
-        A view with one pane: "chase" or "overview".
+        "chase", whose only pane is the whole picture.
     size : (int, int)
         Of the frames [px].
 

@@ -48,7 +48,7 @@ class Encoder:
             raise OutputError(f"video {str(path)!r} is a folder: name a file in it")
         # In the same folder, so that renaming it is a single act.
         self._part = self.path.with_name(f".{self.path.stem}-{secrets.token_hex(4)}.mp4")
-        self._size, self._fps = size, fps
+        self._size, self._fps, self._frames = size, fps, 0
         self._process: subprocess.Popen[bytes] | None = None
 
     def open(self) -> None:
@@ -103,6 +103,7 @@ class Encoder:
         assert self._process is not None and self._process.stdin is not None
         try:
             self._process.stdin.write(frame.data)
+            self._frames += 1
         except OSError as error:
             raise self._fail(error) from None
 
@@ -111,6 +112,9 @@ class Encoder:
         if self._process is None:
             return
         assert self._process.stdin is not None
+        if not self._frames:
+            self.discard()
+            raise OutputError(f"video {str(self.path)!r} would have no frame: nothing was recorded")
         try:
             self._process.stdin.close()
             if self._process.wait() != 0:

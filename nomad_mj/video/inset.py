@@ -105,6 +105,8 @@ def inset_card(
     picture = _map(grid, cell, radius, move, colour, cell_pixels(unit))
     pad = max(round(9 * unit), 2)
     size = max(round(_TITLE * unit), 6)
+    while size > 6 and text_width("certainty gridNN", size) > picture.width:
+        size -= 1
     title = round(1.55 * size)
     width, height = picture.width + 2 * pad, picture.height + 2 * pad + title
     card = rounded(width, height, 9 * unit)

@@ -11,6 +11,7 @@ Size = tuple[int, int]
 
 _SMALLEST, _LARGEST = 64, 4096
 _CELLS = 21
+_ASPECTS = {"top": 1.0, "overview": 4 / 3}  # least width by height that shows a square room
 
 
 class Box(NamedTuple):
@@ -55,7 +56,7 @@ class Layout(NamedTuple):
 
 def default_size(view: str) -> Size:
     """Return the size [px] that suits a view."""
-    return (1120, 480) if view == "side" else (640, 480)
+    return {"side": (1120, 480), "overview": (800, 480)}.get(view, (640, 480))
 
 
 def check_size(size: Size) -> Size:
@@ -97,16 +98,22 @@ def make_layout(view: str, size: Size | None = None) -> Layout:
         raise UnknownNameError("view", view, VIEWS)
     width, height = check_size(size or default_size(view))
     if view == "side":
-        top = min(height, width // 2)
-        left = width - top
+        right = min(height, width // 2)
+        left = width - right
         panes = (
             Pane("chase", Box(0, 0, left, height)),
-            Pane("top", Box(left, 0, top, height)),
+            Pane("top", _fit(Box(left, 0, right, height), "top")),
         )
         return _overlaid((width, height), panes, left)
-    if view == "top":
-        return _from_above(width, height)
-    return _overlaid((width, height), (Pane(view, Box(0, 0, width, height)),), width)
+    if view == "chase":
+        return _overlaid((width, height), (Pane(view, Box(0, 0, width, height)),), width)
+    return _beside(view, width, height)
+
+
+def _fit(box: Box, camera: str) -> Box:
+    """Return the box, lower if it is so narrow that its sides would cut off the room."""
+    height = min(box.height, round(box.width / _ASPECTS[camera]))
+    return Box(box.x, box.y + (box.height - height) // 2, box.width, height)
 
 
 def _overlaid(size: Size, panes: tuple[Pane, ...], width: int) -> Layout:
@@ -118,23 +125,29 @@ def _overlaid(size: Size, panes: tuple[Pane, ...], width: int) -> Layout:
     return Layout(size, panes, unit, (edge, edge), caption)
 
 
-def _from_above(width: int, height: int) -> Layout:
+def _beside(view: str, width: int, height: int) -> Layout:
     """Lay inset and caption beside the room if there is space, else the caption below it."""
     column = round(height / 3)
-    if width - column >= 0.95 * height:
+    if width - column >= 0.95 * _ASPECTS[view] * height:
         unit = height / 480
         edge = round(8 * unit)
-        panes = (Pane("top", Box(column, 0, width - column, height)),)
-        caption = Box(edge, column + 2 * edge, column - 2 * edge, height - column - 3 * edge)
-        return Layout((width, height), panes, unit, (edge, edge), caption)
-    unit = min(width, height) / 480
+        box = _fit(Box(column, 0, width - column, height), view)
+        below = inset_height(unit) + 2 * edge
+        caption = Box(edge, below, column - 2 * edge, height - below - edge)
+        return Layout((width, height), (Pane(view, box),), unit, (edge, edge), caption)
+    unit = min(width / 640, height / 480)
     line = max(round(36 * unit), 8)
     edge = round(6 * unit)
-    panes = (Pane("top", Box(0, 0, width, height - line - 2 * edge)),)
+    box = _fit(Box(0, 0, width, height - line - 2 * edge), view)
     caption = Box(edge, height - line - edge, width - 2 * edge, line)
-    return Layout((width, height), panes, unit, (edge, edge), caption)
+    return Layout((width, height), (Pane(view, box),), unit, (edge, edge), caption)
 
 
 def cell_pixels(unit: float) -> int:
     """Return how many pixels a side of a grid cell takes."""
     return max(round(6 * unit), 1)
+
+
+def inset_height(unit: float) -> int:
+    """Return how high the inset is: the grid, its title and a margin around both."""
+    return _CELLS * cell_pixels(unit) + round(41 * unit)

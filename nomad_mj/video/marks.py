@@ -17,7 +17,7 @@ from nomad_mj.video.palette import INK, RGB
 _SIDES = 10
 _FLAT = np.eye(3).ravel()
 _ANY = np.ones(3)
-_SHADE = np.array([*INK, 0.22], dtype=np.float32)
+_SHADE = np.array([*INK, 0.11], dtype=np.float32)
 
 
 class Sheet:
@@ -109,7 +109,8 @@ class Marks:
 
     def shade(self, centre: FloatArray, radius: float, height: float) -> None:
         """Darken a round patch of the floor: nothing casts a shadow of its own."""
-        self._ellipsoid(np.array([radius, radius, 1e-3]), np.array([*centre, height]), _SHADE)
+        for outer in (radius, 0.86 * radius):
+            self._ellipsoid(np.array([outer, outer, 1e-3]), np.array([*centre, height]), _SHADE)
 
     def ball(self, centre: FloatArray, radius: float, colour: RGB) -> None:
         """Draw a ball around `centre` (3,)."""

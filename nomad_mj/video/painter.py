@@ -83,7 +83,7 @@ class Painter:
             now.arrow(start, end, 0.8 * width, _ARROW, colour)
         marks.add(now)
         if near:
-            marks.shade(head, 1.3 * self._radius, _SHADE)
+            marks.shade(head, 1.35 * self._radius, _SHADE)
         marks.add(self._goal_marks)
         marks.lines(*self._pole, 2.0 * self._unit, _GREEN)
         marks.ball(self._pole[1][0], 0.08, GREEN)
@@ -109,4 +109,4 @@ class Painter:
         ends = starts + np.maximum(ranges + self._rays.offset, 0.0)[:, None] * axes
         colours = range_colours(ranges, _FAR)
         hits = ranges < 0.999 * self._rays.maximum
-        marks.lines(starts[hits], ends[hits], 1.4 * self._unit, colours[hits])
+        marks.lines(starts[hits], ends[hits], 1.6 * self._unit, colours[hits])

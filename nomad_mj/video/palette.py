@@ -18,6 +18,7 @@ GREEN: RGB = (0.09, 0.60, 0.44)
 
 INK: RGB = (0.12, 0.14, 0.18)
 MUTED: RGB = (0.43, 0.46, 0.51)
+GROUND: RGB = (0.93, 0.925, 0.915)
 PAPER: RGB = (0.99, 0.99, 0.985)
 
 # Near is dark and warm, far fades into the floor: lightness rises steadily with the range.
@@ -26,7 +27,7 @@ _RAMP: tuple[RGB, ...] = (
     (0.82, 0.18, 0.22),
     (0.93, 0.45, 0.20),
     (0.90, 0.64, 0.30),
-    (0.66, 0.70, 0.66),
+    (0.71, 0.74, 0.71),
 )
 _STEPS = 256
 

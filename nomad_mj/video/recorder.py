@@ -129,10 +129,10 @@ class EpisodeRecorder:
 
     def hold(self, seconds: float, title: str = "", subtitle: str = "") -> None:
         """Stand still for some seconds of the video, with a title if there is one."""
+        before = self._catch_up()
         layout = self._studio.layout
         card = title_card(title, subtitle, layout.panes[0].box, layout.unit) if title else None
-        time = self._before.time if self._before is not None else 0.0
-        frame = self._studio.frame(time, 0.0, card)
+        frame = self._studio.frame(before.time, 0.0, card)
         for _ in range(round(seconds * self._fps)):
             self._write(frame)
 
@@ -160,8 +160,7 @@ class EpisodeRecorder:
         """
         if isinstance(caption, str):
             caption = Caption(fields=(("", caption),) if caption else ())
-        if self._before is None:
-            self._begin(self._see(None))
+        self._catch_up()
         self._studio.show_move(grid, move, cell, caption)
 
     def caption(self, caption: Caption) -> None:
@@ -177,12 +176,20 @@ class EpisodeRecorder:
             ranges = np.concatenate([step.observation[ring] for ring in self._rings])
         return _State(float(physics.data.time), physics.data.qpos.copy(), ranges)
 
-    def _begin(self, state: _State) -> None:
+    def _catch_up(self) -> _State:
+        """Begin an episode if the simulation is not where it was seen last; return its state."""
+        state, before = self._see(None), self._before
+        if before is None or before.time != state.time:
+            return self._begin(state)
+        return before if np.array_equal(before.qpos, state.qpos) else self._begin(state)
+
+    def _begin(self, state: _State) -> _State:
         self._before = state
         self._origin, self._since = state.time, 0
         self._studio.show(self._env.physics.data)
         self._studio.begin()
         self._studio.painter.ranges = state.ranges
+        return state
 
     def _on_control_step(self, step: dm_env.TimeStep) -> None:
         if self._borrowed is not None:
