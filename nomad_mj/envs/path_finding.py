@@ -174,7 +174,7 @@ class PathFinding(dm_env.Environment):
             if drive.motion_heading != watched:
                 watched = drive.motion_heading
                 ahead = self._ahead(watched, turret)
-            free = float(self._sense.take(ahead).min(initial=np.inf))
+            free = float(np.minimum.reduce(self._sense.take(ahead), initial=np.inf))
             speed, steer = drive.command(distance, wheels, free, bumped)
             if drive.done:
                 return Move(drive.outcome, clearance, driven, ticks)
@@ -182,9 +182,9 @@ class PathFinding(dm_env.Environment):
             observation = self._inner.observation
             self._read(observation)
             distance = float(observation["encoders"][0])
-            bumped = bool(observation["bumpers"].any())
+            bumped = np.count_nonzero(observation["bumpers"]) > 0
             wheels, turret = self._angles()
-            clearance = min(clearance, float(self._sense.min()))
+            clearance = min(clearance, float(np.minimum.reduce(self._sense)))
             driven += abs(distance)
             ticks += 1
             if self.on_control_step is not None:

@@ -49,7 +49,7 @@ class NavigationPhysics(Physics):
     def free(self) -> None:
         """Free the simulation and its OpenGL contexts; it cannot be used any more."""
         super().free()
-        for name in ("_raw", "_sensordata", "_history"):  # they would keep the memory alive
+        for name in ("_raw", "_sensordata", "_history", "_qpos"):  # they would keep the memory alive
             vars(self).pop(name, None)
 
     def _bind(self) -> None:
@@ -61,7 +61,8 @@ class NavigationPhysics(Physics):
         rays = self.robot.rays
         self._ray_buffer = np.empty(len(rays.address))
         joints = [model.joint(PREFIX + name) for name in JOINTS]
-        self._qpos_address = np.array([int(joint.qposadr[0]) for joint in joints])
+        self._qpos: FloatArray = data.qpos
+        self._pose_address = np.array([int(joint.qposadr[0]) for joint in joints[:3]])
         servo = model.actuator(PREFIX + "steer")
         self._steer_servo = int(servo.actadr[0])  # -1 where the servo has no memory
         belts = (model.eq_type == mujoco.mjtEq.mjEQ_JOINT) & (model.eq_obj2id == joints[2].id)
@@ -70,7 +71,7 @@ class NavigationPhysics(Physics):
         self._touch = _samples(model, [int(s.id) for s in touch])
         self._speed = _samples(model, [int(model.sensor(PREFIX + "translate_encoder").id)])[:, 0]
         self._timestep = float(model.opt.timestep)
-        self._encoders = [int(model.sensor(PREFIX + name).adr[0]) for name in ENCODERS]
+        self._encoders = np.array([int(model.sensor(PREFIX + name).adr[0]) for name in ENCODERS])
         mujoco.mj_step1(model, data)  # dm_control has just computed a copy with its motors off
 
     def reset(self, keyframe_id: int | None = None) -> None:
@@ -91,14 +92,14 @@ class NavigationPhysics(Physics):
         if nstep > 1:
             mujoco.mj_step(model, data, nstep - 1)
         mujoco.mj_step1(model, data)
-        if self._warnings.any():
+        if np.count_nonzero(self._warnings):
             kinds = list(mujoco.mjtWarning.__members__)
             names = [kind for kind, count in zip(kinds, self._warnings, strict=False) if count]
             raise PhysicsError(f"the simulation diverged at {data.time:.3f} s: {', '.join(names)}")
 
     def place(self, pose: Pose) -> None:
         """Put the robot at `pose`, its wheels along the heading, its turret looking along +x."""
-        self.data.qpos[self._qpos_address[:3]] = pose
+        self.data.qpos[self._pose_address] = pose
         self.data.qpos[self._wheels] = pose.heading  # else their belts would wrench them there
         if self._steer_servo >= 0:  # else the servo would turn the wheels back to zero
             self.data.act[self._steer_servo] = pose.heading
@@ -108,26 +109,28 @@ class NavigationPhysics(Physics):
         rays = self.robot.rays
         # mode="clip": without a check of the indices, which would go through another buffer.
         values = self._sensordata.take(rays.address, out=self._ray_buffer, mode="clip")
-        values[values < 0] = _MISS
+        np.copyto(values, _MISS, where=values < 0)
         cones = np.minimum.reduceat(values, rays.first)
-        cones[cones >= rays.maximum] = _MISS  # the engine cuts what lies farther off to this
+        # The engine cuts what lies farther off to the maximum.
+        np.copyto(cones, _MISS, where=cones >= rays.maximum)
         return cones - rays.offset
 
     def bumpers(self) -> FloatArray:
         """Return 1 for each bumper touched since the last control step, else 0, (B,)."""
         forces = self._history.take(self._touch)
+        if not np.count_nonzero(forces):
+            return np.zeros(forces.shape[1])
         return np.logical_or.reduce(forces, axis=0).astype(np.float64)
 
     def encoders(self) -> FloatArray:
         """Return distance driven since the last control step [m], steer and turret angle [rad]."""
-        speed, steer, turret = (self._sensordata.item(address) for address in self._encoders)
+        speed, steer, turret = self._sensordata.take(self._encoders).tolist()
         driven = (sum(self._history.take(self._speed).tolist()) + speed) * self._timestep
         return np.array([driven, steer, turret])
 
     def pose(self) -> Pose:
         """Return the true pose: where the base is and where the wheels point."""
-        x, y, heading = self._raw[1].qpos.take(self._qpos_address[:3]).tolist()
-        return Pose(x, y, heading)
+        return Pose(*self._qpos.take(self._pose_address).tolist())
 
 
 def _samples(model: mujoco.MjModel, sensors: list[int]) -> IntArray:
