@@ -91,7 +91,8 @@ def load_checkpoint(path: Path) -> Checkpoint:
         The file is missing, corrupt, no checkpoint, or of an unknown version.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        # Opened here, since numpy leaves a file open that is no zip inside.
+        with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
             arrays: dict[str, np.ndarray] = {name: file[name] for name in file.files}
         metadata: Any = json.loads(str(arrays.pop("metadata")[()]))
     except FileNotFoundError:
