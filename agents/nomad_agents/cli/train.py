@@ -7,13 +7,20 @@ from typing import Any
 from rich.console import Console
 
 from nomad_agents.checkpoint import load_checkpoint, save_checkpoint, structure
-from nomad_agents.cli.common import console, interruptible, output_file, path_finding, print_json
+from nomad_agents.cli.common import (
+    Interrupts,
+    console,
+    interruptible,
+    output_file,
+    path_finding,
+    print_json,
+)
 from nomad_agents.cli.progress import TrainingProgress
 from nomad_agents.reactive_planner import ConfigName, ReactivePlanner
-from nomad_agents.registry import AGENTS, find_config
+from nomad_agents.registry import find_agent, find_config
 from nomad_agents.training import Training, TrainingConfig, train, training_report
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, PathFinding
-from nomad_mj.errors import CheckpointError, ConfigError, UnknownNameError
+from nomad_mj.errors import CheckpointError, ConfigError
 
 
 @dataclass(frozen=True)
@@ -25,7 +32,7 @@ class Train:
     robot: str = DEFAULT_ROBOT
     """Name of a robot, or an MJCF file."""
     agent: str = "reactive_planner"
-    """Name of an agent that learns."""
+    """Name of an agent that learns, or a checkpoint, .npz, to go on learning with what it knows."""
     config: ConfigName = "faithful"
     """The paper's parameters, or better ones found since."""
     seed: int = 0
@@ -43,28 +50,33 @@ class Train:
 
     def run(self) -> int:
         """Train; return the exit code."""
-        if self.agent not in AGENTS:
-            raise UnknownNameError("agent", self.agent, AGENTS)
-        if self.agent != ReactivePlanner.name:
-            raise ConfigError(f"agent {self.agent!r} does not learn; try {ReactivePlanner.name!r}")
         settings = TrainingConfig(self.seed, self.max_passes, self.max_decisions)
         screen = console(json_wanted=self.json)
-        with path_finding(self.room, self.robot) as env, interruptible():
-            name = f"{env.scene.arena.name}_{self.agent}_{self.seed}"
+        with path_finding(self.room, self.robot) as env, interruptible() as interrupts:
+            name = f"{env.scene.arena.name}_{ReactivePlanner.name}_{self.seed}"
             path = output_file(self.out, name, ".npz")
-            agent, training = self._begin(env, path)
-            run_training(env, agent, settings, training, path, screen)
+            if self.resume and path.exists():
+                agent, training = self._resume(env, path)
+            else:
+                agent, training = self._begin(env), Training()
+            run_training(env, agent, settings, training, path, screen, interrupts)
             report = training_report(env, agent, training)
             screen.print(f"{_verdict(report, training)}: {path}", soft_wrap=True)
         if self.json:
             print_json(report)
         return 0
 
-    def _begin(self, env: PathFinding, path: Path) -> tuple[ReactivePlanner, Training]:
-        """Return a new agent, or the one of the checkpoint to resume, and how far it is."""
+    def _begin(self, env: PathFinding) -> ReactivePlanner:
+        """Return the agent to train: a new one, or what a checkpoint has learnt elsewhere."""
+        agent = find_agent(self.agent, env.scene.robot.layout, find_config(self.config))
+        if not isinstance(agent, ReactivePlanner):
+            raise ConfigError(f"agent {self.agent!r} does not learn; try {ReactivePlanner.name!r}")
+        agent.plannings = 0
+        return agent
+
+    def _resume(self, env: PathFinding, path: Path) -> tuple[ReactivePlanner, Training]:
+        """Return the agent of the checkpoint to go on from, and how far it is."""
         config = find_config(self.config)
-        if not (self.resume and path.exists()):
-            return ReactivePlanner(env.scene.robot.layout, config), Training()
         checkpoint = load_checkpoint(path)
         robot = env.scene.robot
         wanted = (env.scene.arena.name, robot.name, robot.layout, self.seed, config)
@@ -95,10 +107,12 @@ def run_training(
     training: Training,
     path: Path,
     screen: Console,
+    interrupts: Interrupts,
 ) -> None:
     """Train with a progress bar; write a checkpoint after each pass and at the end.
 
-    Interrupted, it writes one too, and raises KeyboardInterrupt: training can go on from there.
+    Interrupted, it finishes the episode, writes one too, and raises KeyboardInterrupt: training
+    can go on from there to the same bits.
     """
 
     def save() -> None:
@@ -110,14 +124,15 @@ def run_training(
 
         def after_episode(now: Training) -> None:
             progress.show(now, agent)
-            if now.next_start == 0:
+            if now.next_start == 0 or interrupts.requested:
                 save()
+            interrupts.check()
 
         save()
-        try:
-            train(env, agent, settings, training, after_episode)
-        finally:
-            save()
+        interrupts.patient = True
+        train(env, agent, settings, training, after_episode)
+        save()
+        interrupts.patient = False
 
 
 def _verdict(report: dict[str, Any], training: Training) -> str:
