@@ -95,8 +95,7 @@ def record(
     NomadError
         An option, a start or a path that is wrong; no OpenGL.
     """
-    episodes: list[Episode] = []
-    count = len(starts)
+    episodes, count = list[Episode](), len(starts)
     title = f"{agent.name} in {env.scene.arena.name}".replace("_", " ")
     with EpisodeRecorder(env, path, view=view, size=size, fps=fps, speed=speed) as recorder:
         for i, stream in enumerate(np.random.SeedSequence(seed).spawn(count)):

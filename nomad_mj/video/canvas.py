@@ -20,6 +20,7 @@ Image = npt.NDArray[np.uint8]
 """Rows from the top, (height, width, 3)."""
 
 _MOST_GEOMS = 10_000
+_WIDEST = 4.0  # width by height of a pane
 
 
 def scene_option() -> mujoco.MjvOption:
@@ -27,6 +28,21 @@ def scene_option() -> mujoco.MjvOption:
     option = mujoco.MjvOption()
     option.flags[mujoco.mjtVisFlag.mjVIS_RANGEFINDER] = 0
     return option
+
+
+def sees_sky(scene: mujoco.MjvScene) -> bool:
+    """Whether the scene's camera looks above the horizon: drawing a sky takes a fifth of a frame.
+
+    The floor has no end.
+    """
+    eye = scene.camera[0]
+    forward, up = np.array(eye.forward, dtype=float), np.array(eye.up, dtype=float)
+    top = float(eye.frustum_top)
+    if eye.orthographic:
+        return bool(forward[2] > -0.5)
+    aside = max(float(eye.frustum_width), top * _WIDEST) * abs(float(np.cross(forward, up)[2]))
+    highest = forward[2] + (top * abs(up[2]) + aside) / float(eye.frustum_near)
+    return bool(highest > -0.03)
 
 
 def _take_turns() -> None:
@@ -122,6 +138,7 @@ class Canvas:
                 mujoco.mjtCatBit.mjCAT_ALL.value,
                 self._scene,
             )
+            self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = sees_sky(self._scene)
             decorate(self._marks, pane)
             rect = mujoco.MjrRect(x, height - y - pane_height, pane_width, pane_height)
             mujoco.mjr_render(rect, self._scene, self._context)

@@ -10,7 +10,7 @@ import numpy as np
 
 from nomad_mj.envs import PathFinding
 from nomad_mj.scene import CONTROL_TIMESTEP
-from nomad_mj.video.canvas import scene_option
+from nomad_mj.video.canvas import scene_option, sees_sky
 from nomad_mj.video.caption import Caption
 from nomad_mj.video.encoder import Encoder
 from nomad_mj.video.layout import Size
@@ -94,6 +94,7 @@ def frame_costs(
     recorded: list[float] = []
     bare: list[float] = []
     model, option = env.scene.model, scene_option()
+    sky = mujoco.mjtRndFlag.mjRND_SKYBOX
     width, height = size
     with tempfile.TemporaryDirectory() as folder, Studio(env.scene, view, size) as studio:
         encoder = Encoder(Path(folder) / "costs.mp4", size, 30.0)
@@ -109,6 +110,7 @@ def frame_costs(
                 middle = time.perf_counter()
                 for _ in range(_BLOCK):
                     renderer.update_scene(studio.data, camera, option)
+                    renderer.scene.flags[sky] = sees_sky(renderer.scene)
                     renderer.render()
                 end = time.perf_counter()
                 if block:

@@ -7,6 +7,7 @@ import pytest
 
 from nomad_mj.scene import Scene, build_scene
 from nomad_mj.video.cameras import ChaseCamera, base_body, fixed_camera
+from nomad_mj.video.canvas import sees_sky
 
 ROOM = """
 <mujoco><worldbody>
@@ -36,6 +37,14 @@ def place(scene: Scene, x: float, y: float) -> mujoco.MjData:
     return data
 
 
+def look(
+    scene: Scene, data: mujoco.MjData, camera: mujoco.MjvCamera, drawn: mujoco.MjvScene
+) -> None:
+    every = mujoco.mjtCatBit.mjCAT_ALL.value
+    option = mujoco.MjvOption()
+    mujoco.mjv_updateScene(scene.model, data, option, None, camera, every, drawn)
+
+
 def test_the_rooms_own_cameras_are_used() -> None:
     scene = build_scene("paper_room", "nomad200")
     for name in ("top", "overview"):
@@ -49,9 +58,7 @@ def test_a_room_without_cameras_is_seen_whole(scene: Scene, name: str) -> None:
     camera = fixed_camera(scene, name)
     drawn = mujoco.MjvScene(scene.model, 1000)
     data = place(scene, 3.0, 2.0)
-    every = mujoco.mjtCatBit.mjCAT_ALL.value
-    option = mujoco.MjvOption()
-    mujoco.mjv_updateScene(scene.model, data, option, None, camera, every, drawn)
+    look(scene, data, camera, drawn)
     eye = drawn.camera[0]
     corners = np.array([[x, y, z] for x in (-0.2, 6.2) for y in (-0.2, 4.2) for z in (0.0, 0.9)])
     off = corners - eye.pos
@@ -96,3 +103,16 @@ def test_the_chase_camera_rises_over_a_wall_behind_the_robot(scene: Scene) -> No
     free = chase.camera.elevation
     chase.cut(place(scene, 0.4, 2.0), 0.0)
     assert chase.camera.elevation < free - 10
+
+
+def test_the_sky_is_drawn_where_it_shows(scene: Scene) -> None:
+    data, drawn = place(scene, 3.0, 2.0), mujoco.MjvScene(scene.model, 1000)
+    chase = ChaseCamera(scene)
+    chase.cut(data, 0.3)
+    for camera in (chase.camera, fixed_camera(scene, "top"), fixed_camera(scene, "overview")):
+        look(scene, data, camera, drawn)
+        assert not sees_sky(drawn)
+    for elevation in (-18.0, 0.0, 45.0):
+        chase.camera.elevation = elevation
+        look(scene, data, chase.camera, drawn)
+        assert sees_sky(drawn)

@@ -118,7 +118,7 @@ def test_an_interrupted_recording_leaves_nothing(
 def test_several_episodes_share_a_video(
     env: nomad_mj.PathFinding, tmp_path: Path, decode: Decode
 ) -> None:
-    path, size = tmp_path / "v.mp4", (320, 240)
+    path, size = tmp_path / "v.mp4", (640, 480)
     with EpisodeRecorder(env, path, view="top", size=size, speed=10.0) as recorder:
         for number, colour in enumerate((BLUE, ORANGE)):
             env.reset(seed=number, start=(2.0 + 3 * number, 2.0, 0.0))
@@ -126,12 +126,12 @@ def test_several_episodes_share_a_video(
             recorder.annotate(caption=Caption("", colour))
             env.step((0.8, 0.0))
             recorder.hold(0.1)
-    floor = decode(path, size).frames[:, 150:].astype(int)  # where nothing else has a colour
+    floor = decode(path, size).frames[:, 300:].astype(int)  # where nothing else has a colour
     warm = floor[..., 0] - floor[..., 2]
-    blue = (warm[:, :, 85:180] < -65).sum(axis=(1, 2))
-    orange = (warm[:, :, 180:235] > 115).sum(axis=(1, 2))
-    assert blue.max() > 10 and orange[0] == 0
-    assert blue[-1] == 0 and orange[-1] > 4  # the path of the first episode has gone
+    blue = (warm[:, :, 170:360] < -65).sum(axis=(1, 2))
+    orange = (warm[:, :, 360:470] > 115).sum(axis=(1, 2))
+    assert blue.max() > 20 and orange[0] == 0
+    assert blue[-1] == 0 and orange[-1] > 20  # the path of the first episode has gone
 
 
 def test_an_episode_that_nobody_announced_is_noticed(
