@@ -67,6 +67,8 @@ class MotorTask(control.Task):
     ----------
     start_pose : Pose
         Where the present episode started.
+    random : numpy.random.Generator
+        For dm_control's wrappers, which look for it here; the task draws nothing from it.
     """
 
     def __init__(
@@ -107,8 +109,9 @@ class MotorTask(control.Task):
     def _begin(self, physics: NavigationPhysics | None) -> None:
         """Set up the streams and sensors of an episode; place the robot if there is a physics."""
         key = (*self._seed.spawn_key, self._episode)
-        streams = np.random.SeedSequence(self._seed.entropy, spawn_key=key).spawn(3)
-        choice, ranges, odometry = (np.random.default_rng(stream) for stream in streams)
+        streams = np.random.SeedSequence(self._seed.entropy, spawn_key=key).spawn(4)
+        choice, ranges, odometry, free = (np.random.default_rng(stream) for stream in streams)
+        self.random = free
         start = resolve_start(self.scene, self._start, choice)
         if physics is not None:
             physics.place(start)
@@ -163,7 +166,9 @@ class MotorTask(control.Task):
         encoders = physics.encoders()
         self._odometry.update(*encoders.tolist())
         odometry = self._odometry.reading()
-        result = OrderedDict((name, ranges[a:b]) for name, a, b in self._slices)
+        result: OrderedDict[str, FloatArray] = OrderedDict()
+        for name, first, last in self._slices:
+            result[name] = ranges[first:last]
         result["bumpers"] = physics.bumpers()
         result["encoders"] = encoders
         result["odometry"] = odometry

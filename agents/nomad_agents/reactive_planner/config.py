@@ -97,7 +97,6 @@ FAITHFUL = ReactivePlannerConfig()
 TUNED = replace(
     FAITHFUL,
     k_ind=0.02,
-    sigma_floor=0.1,
     no_match="nearest",
     situation=replace(FAITHFUL.situation, circular=True),
 )
