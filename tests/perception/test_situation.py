@@ -4,7 +4,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from nomad_mj.perception import GridSpec, SituationSpec, attraction_force, code_grid, perceive
+from nomad_mj.perception import (
+    GridSpec,
+    SituationSpec,
+    attraction_force,
+    code_grid,
+    code_signal,
+    perceive,
+)
 from nomad_mj.types import FloatArray, RangeRing, SensorLayout
 
 BEARINGS = tuple((np.arange(16) * np.pi / 8).tolist())
@@ -85,6 +92,15 @@ def test_on_the_circle_no_direction_is_a_border_and_on_the_segment_east_is() -> 
         spec = SituationSpec(circular=circular)
         codes = [attraction_force(goal, spec) for goal in (just_north_of_east, just_south)]
         assert (np.abs(codes[0] - codes[1]).max() > 0.5) == jump
+
+
+@given(st.floats(0, 20), st.floats(1, 10))
+def test_the_attraction_is_the_inverse_exponential_of_the_distance(
+    distance: float, scale: float
+) -> None:
+    spec = SituationSpec(intensity_scale=scale)
+    coded = attraction_force(np.array([0.0, distance]), spec)[5:]
+    np.testing.assert_allclose(coded, code_signal(np.exp(-distance / scale), spec.width))
 
 
 def test_the_goal_itself_attracts_most() -> None:

@@ -43,7 +43,7 @@ def test_rays_are_grouped_by_their_numbers_not_by_their_order(
 
 @pytest.mark.parametrize("count", [2, 3, 8, 16])
 @settings(max_examples=5)
-@given(offset=st.floats(-180, 180))
+@given(offset=st.floats(-180, 180).map(lambda angle: round(angle, 9)))
 def test_single_rays_speak_for_the_space_up_to_the_next(
     ring_robot: RingRobot, count: int, offset: float
 ) -> None:
