@@ -30,14 +30,14 @@ Command = (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; return 0, or 2 for a user's mistake, or 130 if interrupted."""
-    command: Train | Evaluate | Record | Reproduce | List | Bench | Demo = tyro.cli(
-        Command,  # pyright: ignore[reportArgumentType]
-        prog="nomad-mj",
-        description="A simulated Nomad 200 learns to find its goal.",
-        args=arguments,
-        config=(tyro.conf.FlagCreatePairsOff,),
-    )
     try:
+        command: Train | Evaluate | Record | Reproduce | List | Bench | Demo = tyro.cli(
+            Command,  # pyright: ignore[reportArgumentType]
+            prog="nomad-mj",
+            description="A simulated Nomad 200 learns to find its goal.",
+            args=arguments,
+            config=(tyro.conf.FlagCreatePairsOff,),
+        )
         return command.run()
     except NomadError as error:
         return fail(str(error))
