@@ -98,7 +98,8 @@ def index_rays(
     Raises
     ------
     ModelError
-        The robot has no range sensor with a name of the form ``<ring>_<ray>_<cone>``.
+        The robot has no range sensor with a name of the form ``<ring>_<ray>_<cone>``, or one that
+        does not turn with the turret.
     """
     found = np.flatnonzero(model.sensor_type == mujoco.mjtSensor.mjSENS_RANGEFINDER)
     sensors = [int(i) for i in found if model.sensor(int(i)).name.startswith(PREFIX)]
@@ -107,6 +108,7 @@ def index_rays(
     first: list[int] = []
     rows: list[tuple[float, float, float]] = []
     rings: list[RangeRing] = []
+    turret = int(model.joint(PREFIX + "turret").bodyid[0])
     for ring_name, cones in group_rays(names).items():
         cones = {cone: [sensors[p] for p in rays] for cone, rays in cones.items()}
         ring = _ring(model, ring_name, cones, number(f"{ring_name}_min_range"))
@@ -117,6 +119,11 @@ def index_rays(
             )
         rings.append(ring)
         for rays in cones.values():
+            if any(model.site_bodyid[model.sensor_objid[s]] != turret for s in rays):
+                raise ModelError(
+                    f"robot {robot!r}: the sites of {ring_name!r} must be in the body of the joint "
+                    "'turret', from whose angle their bearings are counted"
+                )
             first.append(len(address))
             address.extend(int(model.sensor_adr[s]) for s in rays)
             site = model.site_pos[int(model.sensor_objid[rays[0]])]

@@ -58,6 +58,12 @@ BAD = {
     "radius < 0": ('data="0.2"', 'data="-2"', "radius is -2", "above 0"),
     "no limits": (' ctrlrange="-0.5 0.5"', "", "actuator 'translate'", "needs a ctrlrange"),
     "ball": ('type="slide" axis="1 0 0"', 'type="ball"', "joint 'base_x'", "must be a slide"),
+    "fixed ring": (
+        '<joint name="turret" axis="0 0 1"/>',
+        '<joint name="turret" axis="0 0 1"/></body><body name="fixed" pos="0 0 0.3">',
+        "the sites of 'infrared'",
+        "the joint 'turret'",
+    ),
     "least": ("<custom>", '<custom><numeric name="infrared_min_range" data="2"/>', "2 m", "1.5 m"),
 }
 
