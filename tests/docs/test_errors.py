@@ -1,0 +1,95 @@
+"""The messages that the pages list are those that a user's mistakes really bring."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from nomad_agents.cli.main import main
+
+import nomad_mj
+from nomad_mj.errors import NomadError
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+ROOM = (
+    ('name="goal"', 'name="gaol"', "has no site named 'goal'; sites there are: "),
+    ('name="start_', 'name="begin_', "has no site whose name begins with 'start'"),
+    ('pos="1 1 0"', 'pos="3 1.6 0"', "overlaps 'obstacle_post' by "),
+    ('size="0.4 0.45"', 'size="1.9 0.45"', "cannot reach the goal "),
+    ("</worldbody>", "", "is not valid MJCF: "),
+)
+ROBOT = (
+    (
+        '<velocity name="turret"',
+        '<velocity name="tower"',
+        "lacks the actuator 'turret'; actuators it has: translate, steer",
+    ),
+    (
+        'name="steer" axis="0 0 1"',
+        'name="steer" type="slide" axis="0 0 1"',
+        "joint 'steer' must be a hinge",
+    ),
+    ('ctrlrange="-0.5 0.5"', "", "actuator 'translate' needs a ctrlrange"),
+    ('name="radius"', 'name="width"', "lacks its radius: add <custom>"),
+    (
+        '<rangefinder name="lidar" site="lidar" cutoff="3"/>',
+        "",
+        "has no range sensor: add rangefinders named <ring>_<ray>_<cone>",
+    ),
+    (
+        "</custom>",
+        '<numeric name="lidar_min_range" data="4"/></custom>',
+        "lidar_min_range 4 m must be below the cutoff of its rangefinders, 3 m",
+    ),
+    ('data="0.2"', 'data="0.5"', "a robot of radius 0.5 m at site "),
+)
+
+
+def model(page: str) -> str:
+    found = re.search(r"```xml\n(.*?)```", (DOCS / page).read_text(), re.DOTALL)
+    assert found
+    return found[1]
+
+
+def error_of(**files: Any) -> str:
+    with pytest.raises(NomadError) as raised:
+        nomad_mj.load("path_finding", **files)
+    message = str(raised.value)
+    assert "\n" not in message
+    return message
+
+
+@pytest.mark.parametrize(
+    ("kind", "old", "new", "told"),
+    [("room", *case) for case in ROOM] + [("robot", *case) for case in ROBOT],
+)
+def test_mistakes_bring_the_message_of_the_page(
+    kind: str, old: str, new: str, told: str, tmp_path: Path
+) -> None:
+    page = f"your-own-{kind}.md"
+    text = model(page)
+    assert old in text
+    (tmp_path / "own.xml").write_text(text.replace(old, new))
+    assert told in error_of(**{kind: tmp_path / "own.xml"})
+    assert f"`{told}`" in (DOCS / page).read_text()
+
+
+@pytest.mark.parametrize(
+    ("room", "told"),
+    [
+        ("my_rom", "unknown room 'my_rom'; there are: "),
+        ("my_rom.xml", "room file 'my_rom.xml' does not exist"),
+    ],
+)
+def test_a_room_that_is_not_there(room: str, told: str) -> None:
+    assert told in error_of(room=room)
+    assert f"`{told}`" in (DOCS / "your-own-room.md").read_text()
+
+
+def test_a_checkpoint_for_other_sensors(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    robot, checkpoint = tmp_path / "my_robot.xml", tmp_path / "few.npz"
+    robot.write_text(model("your-own-robot.md"))
+    assert main(["train", "--max-decisions", "1", "--out", str(checkpoint)]) == 0
+    assert main(["evaluate", "--agent", str(checkpoint), "--robot", str(robot)]) == 2
+    assert "is for other sensors: " in capsys.readouterr().err
+    assert "`is for other sensors: `" in (DOCS / "your-own-robot.md").read_text()
