@@ -84,11 +84,9 @@ class PathFinding(dm_env.Environment):
         self.on_control_step: Callable[[dm_env.TimeStep], None] | None = None
         self._time_limit = time_limit
         layout = self.scene.robot.layout
-        self._rings = [ring.name for ring in layout.rings]
         self._bearings = np.concatenate([ring.bearings for ring in layout.rings])
         self._over = True
         self._ticks = 0
-        self._sense: FloatArray = np.zeros(layout.count)
         self._inner: dm_env.TimeStep | None = None
 
     @property
@@ -127,8 +125,8 @@ class PathFinding(dm_env.Environment):
         self._inner = self.motor.reset(seed, start)
         self._over = False
         self._ticks = 0
-        self._read(self._inner.observation)
-        return dm_env.restart(self._observe(Move(Outcome.NONE, float(self._sense.min()))))
+        nearest = float(self.motor.task.ranges.min())
+        return dm_env.restart(self._observe(Move(Outcome.NONE, nearest)))
 
     def step(self, action: Any) -> dm_env.TimeStep:
         """Carry out one move and return what became of it."""
@@ -155,6 +153,7 @@ class PathFinding(dm_env.Environment):
 
     def _carry_out(self, move: FloatArray) -> Move:
         """Drive a displacement (2,) [m]."""
+        task = self.motor.task
         x, y = move.tolist()
         wheels, turret = self._angles()
         heading = float(np.arctan2(y, x))
@@ -167,31 +166,28 @@ class PathFinding(dm_env.Environment):
             CONTROL_TIMESTEP,
         )
         watched, ahead = heading, self._ahead(heading, turret)
-        distance, driven, clearance, ticks = 0.0, 0.0, np.inf, 0
+        distance, driven, ticks = 0.0, 0.0, 0
+        clearance = np.inf  # until the move is under way
         assert self._inner is not None
         bumped = bool(self._inner.observation["bumpers"].any())
         while True:
             if drive.motion_heading != watched:
                 watched = drive.motion_heading
                 ahead = self._ahead(watched, turret)
-            free = float(np.minimum.reduce(self._sense.take(ahead), initial=np.inf))
+            free = float(np.minimum.reduce(task.ranges.take(ahead), initial=np.inf))
             speed, steer = drive.command(distance, wheels, free, bumped)
             if drive.done:
                 return Move(drive.outcome, clearance, driven, ticks)
             self._inner = self.motor.step((speed, steer, -_TURRET_GAIN * turret))
             observation = self._inner.observation
-            self._read(observation)
             distance = float(observation["encoders"][0])
-            bumped = np.count_nonzero(observation["bumpers"]) > 0
+            bumped = bool(np.count_nonzero(observation["bumpers"]))
             wheels, turret = self._angles()
-            clearance = min(clearance, float(np.minimum.reduce(self._sense)))
+            clearance = min(clearance, float(np.minimum.reduce(task.ranges)))
             driven += abs(distance)
             ticks += 1
             if self.on_control_step is not None:
                 self.on_control_step(self._inner)
-
-    def _read(self, observation: "OrderedDict[str, FloatArray]") -> None:
-        self._sense = np.concatenate([observation[name] for name in self._rings])
 
     def _angles(self) -> tuple[float, float]:
         """Return the directions of the wheels and of the turret by odometry [rad]."""

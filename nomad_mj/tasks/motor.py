@@ -67,6 +67,8 @@ class MotorTask(control.Task):
     ----------
     start_pose : Pose
         Where the present episode started.
+    ranges : array (layout.count,)
+        The range readings of this control step, all rings concatenated [m].
     random : numpy.random.Generator
         For dm_control's wrappers, which look for it here; the task draws nothing from it.
     """
@@ -121,6 +123,7 @@ class MotorTask(control.Task):
         self._noise = RangeNoiseStream(config.range_noise, layout.count, ranges)
         self._odometry = Odometry(start, config.odometry_noise, odometry)
         self._observation: OrderedDict[str, FloatArray] | None = None
+        self.ranges: FloatArray = np.zeros(layout.count)
         self.start_pose = start
 
     def initialize_episode(self, physics: NavigationPhysics) -> None:
@@ -163,6 +166,7 @@ class MotorTask(control.Task):
         rays = self.scene.robot.rays
         ranges = physics.cone_ranges() * self._noise.factors()
         np.minimum(np.maximum(ranges, rays.minimum, out=ranges), rays.maximum, out=ranges)
+        self.ranges = ranges
         encoders = physics.encoders()
         self._odometry.update(*encoders.tolist())
         odometry = self._odometry.reading()

@@ -49,7 +49,12 @@ class NavigationPhysics(Physics):
     def free(self) -> None:
         """Free the simulation and its OpenGL contexts; it cannot be used any more."""
         super().free()
-        for name in ("_raw", "_sensordata", "_history", "_qpos"):  # they would keep the memory alive
+        for name in (
+            "_raw",
+            "_sensordata",
+            "_history",
+            "_qpos",
+        ):  # they would keep the memory alive
             vars(self).pop(name, None)
 
     def _bind(self) -> None:
@@ -71,7 +76,8 @@ class NavigationPhysics(Physics):
         self._touch = _samples(model, [int(s.id) for s in touch])
         self._speed = _samples(model, [int(model.sensor(PREFIX + "translate_encoder").id)])[:, 0]
         self._timestep = float(model.opt.timestep)
-        self._encoders = np.array([int(model.sensor(PREFIX + name).adr[0]) for name in ENCODERS])
+        encoders = [model.sensor(PREFIX + name) for name in ENCODERS]
+        self._encoders = np.array([int(sensor.adr[0]) for sensor in encoders])
         mujoco.mj_step1(model, data)  # dm_control has just computed a copy with its motors off
 
     def reset(self, keyframe_id: int | None = None) -> None:
