@@ -41,6 +41,11 @@ ROBOT = (
         '<numeric name="lidar_min_range" data="4"/></custom>',
         "lidar_min_range 4 m must be below the cutoff of its rangefinders, 3 m",
     ),
+    (
+        '<joint name="turret" axis="0 0 1"/>',
+        '<joint name="turret" axis="0 0 1"/></body><body name="mast" pos="0 0 0.35">',
+        "the sites of 'lidar' must be in the body of the joint 'turret'",
+    ),
     ('data="0.2"', 'data="0.5"', "a robot of radius 0.5 m at site "),
 )
 
