@@ -44,6 +44,12 @@ def see(layout: SensorLayout) -> See:
     return make
 
 
+@pytest.fixture
+def here(see: See) -> Percept:
+    """Return what is perceived in the open."""
+    return see()
+
+
 @pytest.fixture(scope="session")
 def small_room(own_room: SmallRoom) -> Path:
     """Return a room with one box and three starts, learnt in seconds."""

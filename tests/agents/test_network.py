@@ -1,5 +1,6 @@
 """The modular network: Eqs 9-10, the rule of k_ind, categories on demand, growth."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -35,7 +36,7 @@ def test_parameters_are_those_of_table_1() -> None:
 
 
 def test_tuned_keeps_the_equations_but_other_numbers() -> None:
-    assert (TUNED.k_ind, TUNED.sigma_floor, TUNED.situation.circular) == (0.02, 0.1, True)
+    assert (TUNED.k_ind, TUNED.no_match, TUNED.situation.circular) == (0.02, "nearest", True)
     assert TUNED.planner == FAITHFUL.planner and TUNED.action == FAITHFUL.action
 
 
@@ -174,21 +175,22 @@ def test_what_is_restored_is_the_same_grows_on_and_is_its_own() -> None:
     assert second.category[-1] == 140
 
 
-@pytest.mark.parametrize(
-    ("name", "spoil", "told"),
-    [
-        ("value", lambda a: a[:-1], "'prototype' has shape"),
-        ("weights", lambda a: a[:, :1], "'weights' has shape"),
-        ("situation", lambda a: a[:, :2], "'situation' has shape"),
-        ("trace", lambda a: a.astype(np.float32), "type float32"),
-        ("category", lambda a: a.astype(float), "type float64"),
-        ("category", lambda a: a + 1, "belongs to no category"),
-        ("category", lambda a: a - 1, "belongs to no category"),
-        ("best_action", lambda a: a * np.nan, "not finite"),
-        ("value", lambda a: a - np.inf, "not finite"),
-    ],
-)
-def test_what_cannot_be_restored_changes_nothing(name: str, spoil: Any, told: str) -> None:
+Spoil = Callable[[Any], Any]
+SPOILT: list[tuple[str, Spoil, str]] = [
+    ("value", lambda a: a[:-1], "'prototype' has shape"),
+    ("weights", lambda a: a[:, :1], "'weights' has shape"),
+    ("situation", lambda a: a[:, :2], "'situation' has shape"),
+    ("trace", lambda a: a.astype(np.float32), "type float32"),
+    ("category", lambda a: a.astype(float), "type float64"),
+    ("category", lambda a: a + 1, "belongs to no category"),
+    ("category", lambda a: a - 1, "belongs to no category"),
+    ("best_action", lambda a: a * np.nan, "not finite"),
+    ("value", lambda a: a - np.inf, "not finite"),
+]
+
+
+@pytest.mark.parametrize(("name", "spoil", "told"), SPOILT)
+def test_what_cannot_be_restored_changes_nothing(name: str, spoil: Spoil, told: str) -> None:
     network, arrays = filled(count=5), filled().arrays()
     before = network.arrays()
     with np.errstate(invalid="ignore"):

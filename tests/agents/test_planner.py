@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import See
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from nomad_agents.reactive_planner import ACTIONS, FAITHFUL, PlannerConfig, estimate_value, plan
 from nomad_agents.reactive_planner.planner import path_clearance
@@ -145,24 +145,32 @@ def test_boxed_in_the_plan_keeps_as_far_off_as_it_can() -> None:
     assert np.isfinite(best.value) and np.abs(best.action).max() <= 1
 
 
+def leaves_a_choice(percept: Percept) -> bool:
+    """Return False where every move is barred: the farthest off is then often a tie."""
+    moves = displacement(ACTIONS, percept.goal, ACTION)
+    return bool((path_clearance(moves, percept, RADIUS, GRID, CONFIG)[0] > 1e-6).any())
+
+
 def mirrored(percept: Percept) -> Percept:
     """Return what is perceived in the world's image in the x axis."""
     return percept._replace(grid=percept.grid[::-1], goal=percept.goal * [1, -1])
 
 
-@given(st.integers(0, 2**32), st.floats(0.0, 0.2))
+@given(st.integers(0, 2**32), st.floats(0.0, 0.1))
 def test_mirrored_worlds_give_mirrored_plans(seed: int, density: float) -> None:
     percept = world(seed, density)
+    assume(leaves_a_choice(percept))
     one = plan(percept, RADIUS, GRID, ACTION, CONFIG)
     other = plan(mirrored(percept), RADIUS, GRID, ACTION, CONFIG)
     assert other.value == pytest.approx(one.value)
-    if density > 0.05:  # enough to break ties
+    if density > 0.03:  # enough to break ties
         assert other.action == pytest.approx(one.action * [1, -1])
 
 
 @given(st.integers(0, 2**32))
 def test_turned_worlds_give_the_same_plan(seed: int) -> None:
-    percept = world(seed, 0.15)
+    percept = world(seed, 0.06)
+    assume(leaves_a_choice(percept))
     turned = percept._replace(
         grid=np.rot90(percept.grid, -1),  # rows run along y: this turns left
         goal=np.array([-percept.goal[1], percept.goal[0]]),
