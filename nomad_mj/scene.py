@@ -69,6 +69,8 @@ def _read(kind: str, path: Path) -> mujoco.MjSpec:
             spec.copy().compile()
         except (ValueError, RuntimeError, UnicodeDecodeError) as error:
             reason = " ".join(str(error).split())
+            if path.suffix != ".xml":
+                reason += "; its name must end in .xml"
             raise ModelError(f"{kind} file {str(path)!r} is not valid MJCF: {reason}") from None
     if any("NaN" in warning for warning in said):
         raise ModelError(f"{kind} file {str(path)!r} holds a NaN; give a number in its place")

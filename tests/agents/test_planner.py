@@ -50,7 +50,7 @@ def literal_estimate(place: FloatArray, percept: Percept, config: PlannerConfig)
 def literal_clearance(move: FloatArray, percept: Percept, config: PlannerConfig) -> float:
     """Return how near a disc comes to occupied cells, along a finely divided move."""
     way = np.linspace(0, 1, 400)[:, None] * move
-    cells = CENTRES[percept.grid >= config.occupied]
+    cells = CENTRES[percept.grid > config.occupied]
     off = np.linalg.norm(cells[:, None] - way, axis=-1)
     return float(off.min(initial=np.inf)) - RADIUS - config.margin
 

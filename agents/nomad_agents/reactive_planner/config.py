@@ -23,7 +23,7 @@ class PlannerConfig:
     k_alpha : float
         Half the angle around the goal's direction in which cells repel [rad].
     occupied : float
-        From this probability on a cell bars the way.
+        Above this probability a cell bars the way; those that no cone sees do not.
     margin : float
         What the grid shows can be so much nearer [m]: half a cell, and the noise of 15 % at the
         end of the longest move.

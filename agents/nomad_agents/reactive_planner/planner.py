@@ -74,7 +74,7 @@ def path_clearance(
     array (n,), float
         Along each move, and where the robot stands now; inf where the grid is empty.
     """
-    cells = _centres(grid)[percept.grid.ravel() >= config.occupied]
+    cells = _centres(grid)[percept.grid.ravel() > config.occupied]
     if not len(cells):
         return np.full(len(moves), np.inf), np.inf
     length2 = np.maximum((moves**2).sum(axis=1), 1e-12)
