@@ -10,6 +10,7 @@ from nomad_mj.motion import ActionSpec, displacement, reinforcement
 from nomad_mj.perception import GridSpec, Percept, cell_centres
 from nomad_mj.types import FloatArray
 
+_AT_GOAL = 1e-9  # [m]
 _STEPS = np.linspace(-1.0, 1.0, 9)
 ACTIONS: FloatArray = np.stack(np.meshgrid(_STEPS, _STEPS, indexing="ij"), axis=-1).reshape(-1, 2)
 ACTIONS.setflags(write=False)  # plans are rows of it
@@ -53,6 +54,7 @@ def estimate_value(
     goal_distance = np.hypot(to_goal[:, 0], to_goal[:, 1])
     along = to_cell[..., 0] * to_goal[:, :1] + to_cell[..., 1] * to_goal[:, 1:]
     between = along >= np.cos(config.k_alpha) * cell_distance * goal_distance[:, None]
+    between &= goal_distance[:, None] > _AT_GOAL  # from the goal no direction leads to it
     repulsion = occupancy[seen] / np.maximum(cell_distance, config.k_clear)
     return -config.k_length * goal_distance - config.k_rep * (repulsion * between).sum(axis=1)
 
