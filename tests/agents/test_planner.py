@@ -89,6 +89,14 @@ def test_the_nearer_to_a_thing_ahead_the_more_it_repels(
     assert 0 < cost[0] <= cost[1]
 
 
+@given(st.integers(0, 2**32))
+def test_the_goal_itself_is_worth_nothing_whatever_stands_around(seed: int) -> None:
+    percept = world(seed, 0.5)
+    near = percept._replace(goal=percept.goal / 9)
+    moves = displacement(np.array([[1.0, 0.0]]), near.goal, ACTION)  # right to it, but for rounding
+    assert estimate_value(moves, near, GRID, CONFIG) == pytest.approx([0.0], abs=1e-9)
+
+
 def test_what_lies_behind_does_not_repel() -> None:
     behind = wall(1.2)._replace(goal=np.array([-4.0, 0.0]))
     assert estimate_value(np.zeros((1, 2)), behind, GRID, CONFIG) == pytest.approx([-3.0])
