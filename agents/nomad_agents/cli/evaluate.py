@@ -16,6 +16,7 @@ from nomad_agents.evaluation import Trial, draw_starts, evaluate, read_starts, s
 from nomad_agents.reactive_planner import ConfigName
 from nomad_agents.registry import find_agent, find_config
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, PathFinding
+from nomad_mj.errors import ConfigError
 from nomad_mj.types import FloatArray
 
 METRICS = {
@@ -79,6 +80,8 @@ class Evaluate:
 
 def choose_starts(env: PathFinding, starts: str, seed: int) -> FloatArray:
     """Return the starts (n, 3) that `--starts` means: a number of them, or those of a file."""
+    if seed < 0:
+        raise ConfigError(f"seed {seed}: must be 0 or more")
     try:
         count = int(starts)
     except ValueError:
