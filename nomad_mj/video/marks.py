@@ -12,12 +12,16 @@ import numpy as np
 import numpy.typing as npt
 
 from nomad_mj.types import FloatArray
-from nomad_mj.video.palette import INK, RGB
+from nomad_mj.video.palette import RGB
 
-_SIDES = 10
+_SIDES, _ROUND = 8, 24  # sides of a dot, of a disc
 _FLAT = np.eye(3).ravel()
 _ANY = np.ones(3)
-_SHADE = np.array([*INK, 0.11], dtype=np.float32)
+
+
+def _circle(sides: int) -> FloatArray:
+    angle = np.arange(sides) * (2 * np.pi / sides)
+    return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
 
 class Sheet:
@@ -26,9 +30,9 @@ class Sheet:
     def __init__(self) -> None:
         self.triangles: list[tuple[FloatArray, FloatArray, npt.NDArray[np.float32]]] = []
 
-    def fan(self, outline: FloatArray, height: float, colour: RGB) -> None:
+    def fan(self, outline: FloatArray, height: float, colour: RGB, opacity: float = 1.0) -> None:
         """Fill a convex polygon (N, 2) [m] at a height [m]."""
-        rgba = np.array([*colour, 1.0], dtype=np.float32)
+        rgba = np.array([*colour, opacity], dtype=np.float32)
         x, y = outline[0].tolist()
         place = np.array([x, y, height])
         sides = (outline[1:] - outline[0]).tolist()
@@ -37,11 +41,15 @@ class Sheet:
             axes = np.array([ax, bx, 0.0, ay, by, 0.0, 0.0, 0.0, 1.0])
             self.triangles.append((place, axes, rgba))
 
-    def disc(self, centre: FloatArray, radius: float, height: float, colour: RGB) -> None:
-        """Draw a disc around `centre` (2,)."""
-        angle = np.arange(_SIDES) * (2 * np.pi / _SIDES)
-        outline = centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-        self.fan(outline, height, colour)
+    def dot(self, centre: FloatArray, radius: float, height: float, colour: RGB) -> None:
+        """Draw a small disc around `centre` (2,)."""
+        self.fan(centre + radius * _circle(_SIDES), height, colour)
+
+    def disc(
+        self, centre: FloatArray, radius: float, height: float, colour: RGB, opacity: float
+    ) -> None:
+        """Draw a large, translucent disc around `centre` (2,)."""
+        self.fan(centre + radius * _circle(_ROUND), height, colour, opacity)
 
     def ribbon(
         self, points: FloatArray, colours: Sequence[RGB], width: float, height: float
@@ -85,13 +93,13 @@ class Marks:
         self._scene = scene
         self._geoms = scene.geoms  # a tuple of all places there are; looking it up is slow
 
-    def add(self, sheet: Sheet) -> None:
-        """Add a sheet of triangles."""
+    def add(self, sheet: Sheet, shift: FloatArray | None = None) -> None:
+        """Add a sheet of triangles, moved by `shift` (3,) [m]."""
         first, most = self._scene.ngeom, self._scene.maxgeom
         kind, init = mujoco.mjtGeom.mjGEOM_TRIANGLE, mujoco.mjv_initGeom
         triangles = sheet.triangles[: most - first]
         for geom, (place, axes, rgba) in zip(self._geoms[first:most], triangles, strict=False):
-            init(geom, kind, _ANY, place, axes, rgba)
+            init(geom, kind, _ANY, place if shift is None else place + shift, axes, rgba)
         self._scene.ngeom = first + len(triangles)
 
     def lines(
@@ -107,21 +115,13 @@ class Marks:
             mujoco.mjv_initGeom(geom, kind, _ANY, start, _FLAT, colour)
             mujoco.mjv_connector(geom, kind, width, start, end)
 
-    def shade(self, centre: FloatArray, radius: float, height: float) -> None:
-        """Darken a round patch of the floor: nothing casts a shadow of its own."""
-        for outer in (radius, 0.86 * radius):
-            self._ellipsoid(np.array([outer, outer, 1e-3]), np.array([*centre, height]), _SHADE)
-
     def ball(self, centre: FloatArray, radius: float, colour: RGB) -> None:
         """Draw a ball around `centre` (3,)."""
-        self._ellipsoid(np.full(3, radius), centre, np.array([*colour, 1.0], dtype=np.float32))
-
-    def _ellipsoid(
-        self, size: FloatArray, place: FloatArray, rgba: npt.NDArray[np.float32]
-    ) -> None:
         geom = self._place()
         if geom is not None:
-            mujoco.mjv_initGeom(geom, mujoco.mjtGeom.mjGEOM_ELLIPSOID, size, place, _FLAT, rgba)
+            kind, size = mujoco.mjtGeom.mjGEOM_ELLIPSOID, np.full(3, radius)
+            rgba = np.array([*colour, 1.0], dtype=np.float32)
+            mujoco.mjv_initGeom(geom, kind, size, centre, _FLAT, rgba)
 
     def _place(self) -> mujoco.MjvGeom | None:
         index = self._scene.ngeom

@@ -8,7 +8,7 @@ from nomad_mj.types import FloatArray, IntArray
 from nomad_mj.video.cameras import base_body
 from nomad_mj.video.layout import Pane
 from nomad_mj.video.marks import Marks, Sheet
-from nomad_mj.video.palette import GREEN, PAPER, RGB, range_colours
+from nomad_mj.video.palette import GREEN, INK, PAPER, RGB, range_colours
 from nomad_mj.video.trail import Trail
 
 _FAR = 3.0  # [m]; readings from here on look alike
@@ -60,12 +60,15 @@ class Painter:
         self._rays = scene.robot.rays
         self._sites = _axis_sites(scene)
         self._base = base_body(scene.model)
-        self._radius = scene.robot.layout.radius
+        self._shade = Sheet()  # nothing casts a shadow of its own
+        for grow in (1.35, 1.16):
+            radius = grow * scene.robot.layout.radius
+            self._shade.disc(np.zeros(2), radius, _SHADE, INK, 0.11)
         self._drawn: dict[float, tuple[Trail, tuple[int, int], Sheet]] = {}
         goal = scene.arena.goal
         self._goal_marks = Sheet()
-        self._goal_marks.disc(goal, 0.10, _GOAL, PAPER)
-        self._goal_marks.disc(goal, 0.05, _GOAL + 0.002, GREEN)
+        self._goal_marks.dot(goal, 0.10, _GOAL, PAPER)
+        self._goal_marks.dot(goal, 0.05, _GOAL + 0.002, GREEN)
         self._pole = np.array([[*goal, 0.0]]), np.array([[*goal, _POLE]])
 
     def decorate(self, data: mujoco.MjData, marks: Marks, pane: Pane) -> None:
@@ -83,7 +86,7 @@ class Painter:
             now.arrow(start, end, 0.8 * width, _ARROW, colour)
         marks.add(now)
         if near:
-            marks.shade(head, 1.35 * self._radius, _SHADE)
+            marks.add(self._shade, np.array([*head, 0.0]))
         marks.add(self._goal_marks)
         marks.lines(*self._pole, 2.0 * self._unit, _GREEN)
         marks.ball(self._pole[1][0], 0.08, GREEN)
@@ -99,7 +102,7 @@ class Painter:
         sheet = Sheet()
         sheet.ribbon(points, colours, width, _PATH)
         for place, colour in trail.stops:
-            sheet.disc(place, 0.85 * width, _STOP, colour)
+            sheet.dot(place, 0.85 * width, _STOP, colour)
         self._drawn[width] = trail, (len(points), len(trail.stops)), sheet
         return sheet
 

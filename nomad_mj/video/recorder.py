@@ -7,6 +7,7 @@ from typing import NamedTuple
 import dm_env
 import mujoco
 import numpy as np
+import numpy.typing as npt
 from typing_extensions import Self
 
 from nomad_mj.envs import PathFinding
@@ -207,7 +208,6 @@ class EpisodeRecorder:
         """Write the frames after one control step up to the next."""
         model = self._env.scene.model
         mujoco.mj_differentiatePos(model, self._change, 1.0, before.qpos, after.qpos)
-        self._studio.painter.ranges = after.ranges
         step = self._speed / self._fps
         while (time := self._origin + self._since * step) <= after.time + _EPS:
             self._since += 1
@@ -215,7 +215,15 @@ class EpisodeRecorder:
             qpos = before.qpos.copy()
             mujoco.mj_integratePos(model, qpos, self._change, share)
             self._studio.show(self._env.physics.data, qpos)
+            # Readings glide too: their noise, anew at each step, would make the rays flicker.
+            mixed = (1 - share) * before.ranges + share * after.ranges
+            self._studio.painter.ranges = np.where(self._hit(before, after), mixed, after.ranges)
             self._write(self._studio.frame(time, 1 / self._fps))
+
+    def _hit(self, *states: _State) -> npt.NDArray[np.bool_]:
+        """Whether a cone, (C,), has met something in all of the states."""
+        limit = self._env.scene.robot.rays.maximum
+        return np.logical_and.reduce([state.ranges < limit for state in states])
 
     def _write(self, frame: Image) -> None:
         self._encoder.write(frame)
