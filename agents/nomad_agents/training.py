@@ -32,7 +32,7 @@ class TrainingConfig:
     max_passes : int
         Give up after so many passes.
     max_decisions : int
-        Give up after so many decisions; 0 for no limit.
+        Give up after so many decisions, at the end of an episode; 0 for no limit.
     episode_decisions, test_decisions : int
         A learning episode, a test episode is given up after so many decisions.
     """
@@ -143,16 +143,13 @@ def _learn(
     env: PathFinding, agent: ReactivePlanner, config: TrainingConfig, training: Training
 ) -> None:
     place = (training.passes, training.next_start)
-    limit = config.episode_decisions
-    if config.max_decisions:
-        limit = min(limit, config.max_decisions - training.decisions)
     episode = run_episode(
         env,
         agent,
         seed=stream(config.seed, _LEARN, *place),
         start=training.next_start,
         explore=np.random.default_rng(stream(config.seed, _EXPLORE, *place)),
-        max_decisions=limit,
+        max_decisions=config.episode_decisions,
     )
     training.decisions += episode.decisions
     training.reactions += episode.reactions

@@ -148,9 +148,10 @@ def test_a_training_that_gives_up_counts_the_passes_it_made(
 def test_training_gives_up_after_so_many_decisions(env: PathFinding) -> None:
     agent, training = new(env)
     train(env, agent, TrainingConfig(max_decisions=4), training)
-    assert training.decisions == 4 and not training.done
+    made = training.decisions
+    assert made >= 4 and not training.done and not training.testing
     train(env, agent, TrainingConfig(max_decisions=4), training)
-    assert training.decisions == 4
+    assert training.decisions == made
 
 
 @pytest.mark.parametrize(

@@ -69,39 +69,18 @@ def output_file(out: str, default_name: str, suffix: str) -> Path:
     return path
 
 
-class Interrupts:
-    """Ctrl-C and SIGTERM, held back while `patient` until the work is at a place to stop.
-
-    A second one does not wait.
-    """
-
-    def __init__(self) -> None:
-        self.patient = False
-        self.requested = False
-
-    def handle(self, number: int, frame: object) -> None:
-        """Note the signal, or raise KeyboardInterrupt."""
-        if not self.patient or self.requested:
-            raise KeyboardInterrupt
-        self.requested = True
-
-    def check(self) -> None:
-        """Raise KeyboardInterrupt if one has been held back."""
-        if self.requested:
-            raise KeyboardInterrupt
-
-
 @contextmanager
-def interruptible() -> Generator[Interrupts, None, None]:
+def interruptible() -> Generator[None, None, None]:
     """Let SIGTERM end the work as Ctrl-C does."""
-    interrupts = Interrupts()
-    signals = (signal.SIGINT, signal.SIGTERM)
-    before = [signal.signal(number, interrupts.handle) for number in signals]
+
+    def interrupt(number: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
     try:
-        yield interrupts
+        yield
     finally:
-        for number, handler in zip(signals, before, strict=True):
-            signal.signal(number, handler)
+        signal.signal(signal.SIGTERM, before)
 
 
 def fail(message: str) -> int:

@@ -70,11 +70,11 @@ class Demo:
     def run(self) -> int:
         """Train, compare, draw and record; return the exit code."""
         screen = console(json_wanted=self.json)
-        with path_finding(ROOM, DEFAULT_ROBOT) as env, interruptible() as interrupts:
+        with path_finding(ROOM, DEFAULT_ROBOT) as env, interruptible():
             path = output_file(self.out, ROOM, ".npz")
             agent = ReactivePlanner(env.scene.robot.layout, find_config(self.config))
             training = Training()
-            run_training(env, agent, TrainingConfig(self.seed), training, path, screen, interrupts)
+            run_training(env, agent, TrainingConfig(self.seed), training, path, screen)
             report = training_report(env, agent, training)
             summaries = self._compare(env, agent, screen)
             screen.print(_table({**report, "seed": self.seed}, summaries))

@@ -8,7 +8,6 @@ from rich.console import Console
 
 from nomad_agents.checkpoint import load_checkpoint, save_checkpoint, structure
 from nomad_agents.cli.common import (
-    Interrupts,
     console,
     interruptible,
     output_file,
@@ -16,7 +15,7 @@ from nomad_agents.cli.common import (
     print_json,
 )
 from nomad_agents.cli.progress import TrainingProgress
-from nomad_agents.reactive_planner import ConfigName, ReactivePlanner
+from nomad_agents.reactive_planner import CONFIGS, ConfigName, ReactivePlanner
 from nomad_agents.registry import find_agent, find_config
 from nomad_agents.training import Training, TrainingConfig, train, training_report
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, PathFinding
@@ -40,7 +39,7 @@ class Train:
     max_passes: int = 100
     """Give up after so many passes over the starts."""
     max_decisions: int = 0
-    """Give up after so many decisions; 0: no limit."""
+    """Give up after so many decisions, at the end of an episode; 0: no limit."""
     out: str = "renders"
     """Checkpoint to write, .npz, or a folder for it (ROOM_AGENT_SEED.npz)."""
     resume: bool = False
@@ -52,14 +51,14 @@ class Train:
         """Train; return the exit code."""
         settings = TrainingConfig(self.seed, self.max_passes, self.max_decisions)
         screen = console(json_wanted=self.json)
-        with path_finding(self.room, self.robot) as env, interruptible() as interrupts:
+        with path_finding(self.room, self.robot) as env, interruptible():
             name = f"{env.scene.arena.name}_{ReactivePlanner.name}_{self.seed}"
             path = output_file(self.out, name, ".npz")
             if self.resume and path.exists():
                 agent, training = self._resume(env, path)
             else:
                 agent, training = self._begin(env), Training()
-            run_training(env, agent, settings, training, path, screen, interrupts)
+            run_training(env, agent, settings, training, path, screen)
             report = training_report(env, agent, training)
             screen.print(f"{_verdict(report, training)}: {path}", soft_wrap=True)
         if self.json:
@@ -71,6 +70,11 @@ class Train:
         agent = find_agent(self.agent, env.scene.robot.layout, find_config(self.config))
         if not isinstance(agent, ReactivePlanner):
             raise ConfigError(f"agent {self.agent!r} does not learn; try {ReactivePlanner.name!r}")
+        if agent.config != find_config(self.config):
+            raise ConfigError(
+                f"checkpoint {self.agent!r} has other parameters than --config {self.config}; "
+                f"choose the one it was trained with of: {', '.join(CONFIGS)}"
+            )
         agent.plannings = 0
         return agent
 
@@ -107,11 +111,10 @@ def run_training(
     training: Training,
     path: Path,
     screen: Console,
-    interrupts: Interrupts,
 ) -> None:
     """Train with a progress bar; write a checkpoint after each pass and at the end.
 
-    Interrupted, it finishes the episode, writes one too, and raises KeyboardInterrupt: training
+    Interrupted, it writes one as of the last whole episode and raises KeyboardInterrupt: training
     can go on from there to the same bits.
     """
 
@@ -124,15 +127,14 @@ def run_training(
 
         def after_episode(now: Training) -> None:
             progress.show(now, agent)
-            if now.next_start == 0 or interrupts.requested:
+            if now.next_start == 0:
                 save()
-            interrupts.check()
 
         save()
-        interrupts.patient = True
-        train(env, agent, settings, training, after_episode)
-        save()
-        interrupts.patient = False
+        try:
+            train(env, agent, settings, training, after_episode)
+        finally:
+            save()
 
 
 def _verdict(report: dict[str, Any], training: Training) -> str:

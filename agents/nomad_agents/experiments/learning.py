@@ -15,6 +15,7 @@ from nomad_agents.training import Training, TrainingConfig, train, training_repo
 UNSEEN_STARTS = 200
 UNSEEN_SEED = 1_000_000  # far from the seeds that train
 BASELINES = ("straight", "planner")
+BASELINE_SEEDS = 5  # they learn nothing: only the noise of their sensors differs between runs
 _DECISIONS = 50  # after which an evaluated episode is given up
 
 

@@ -144,7 +144,8 @@ class ReactivePlanner(Agent):
         error = reward + promise - float(network.value[j])
         xi = self.config.xi
         network.trace[j] = xi * abs(error) + (1 - xi) * network.trace[j]  # Eq 14
-        self._remember(j, decision.action, error)
+        if not collided:
+            self._remember(j, decision.action, error)
         if error >= -self.config.k_z and not collided:
             self._tune(percept, decision, error)
             self._adjust_value(j, error)
