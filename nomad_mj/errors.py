@@ -13,6 +13,10 @@ class UnknownNameError(NomadError):
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         super().__init__(f"unknown {kind} {name!r}; there are: {', '.join(sorted(known))}")
 
+    def __reduce__(self) -> tuple[type[NomadError], tuple[str]]:
+        """Come back from another process as the message that it is."""
+        return NomadError, (str(self),)
+
 
 class ModelError(NomadError):
     """A robot or room file that is missing, malformed or lacks an element."""

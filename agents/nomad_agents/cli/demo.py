@@ -14,7 +14,7 @@ from nomad_agents.cli.evaluate import format_metric, run_evaluation
 from nomad_agents.cli.train import run_training
 from nomad_agents.evaluation import Trial, draw_starts, summarise
 from nomad_agents.experiments.figures import draw_actions, draw_paths, lattice, lattice_actions
-from nomad_agents.reactive_planner import ConfigName, ReactivePlanner
+from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.recording import record
 from nomad_agents.registry import find_config, make_agent
 from nomad_agents.training import Training, TrainingConfig, training_report
@@ -52,8 +52,8 @@ _LATTICE = 0.5  # [m] between the places of Fig 7
 class Demo:
     """Train in the paper's room, print the table beside the paper's, write video and figures."""
 
-    config: ConfigName = "faithful"
-    """The paper's parameters, or better ones found since."""
+    config: str = "faithful"
+    """Parameters: faithful (the paper's) or tuned (better ones found since)."""
     seed: int = 0
     """Of all randomness."""
     starts: int = 100

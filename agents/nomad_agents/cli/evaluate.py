@@ -13,7 +13,6 @@ from nomad_agents.checkpoint import write_atomically
 from nomad_agents.cli.common import console, interruptible, output_file, path_finding, print_json
 from nomad_agents.cli.progress import trial_progress
 from nomad_agents.evaluation import Trial, draw_starts, evaluate, read_starts, summarise
-from nomad_agents.reactive_planner import ConfigName
 from nomad_agents.registry import find_agent, find_config
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, PathFinding
 from nomad_mj.errors import ConfigError
@@ -43,8 +42,8 @@ class Evaluate:
     """Name of a room, or an MJCF file."""
     robot: str = DEFAULT_ROBOT
     """Name of a robot, or an MJCF file."""
-    config: ConfigName = "faithful"
-    """Parameters of an agent given by name; a checkpoint has its own."""
+    config: str = "faithful"
+    """Parameters of an agent given by name, faithful or tuned; a checkpoint has its own."""
     starts: str = "200"
     """Number of unseen starts, drawn from --seed, or a file of lines x,y[,heading]."""
     seed: int = 0

@@ -3,11 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
 from nomad_agents.cli.common import console, interruptible, output_file, path_finding, print_json
 from nomad_agents.cli.evaluate import choose_starts
-from nomad_agents.reactive_planner import ConfigName
 from nomad_agents.recording import record
 from nomad_agents.registry import find_agent, find_config
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
@@ -24,16 +22,16 @@ class Record:
     """Name of a room, or an MJCF file."""
     robot: str = DEFAULT_ROBOT
     """Name of a robot, or an MJCF file."""
-    config: ConfigName = "faithful"
-    """Parameters of an agent given by name; a checkpoint has its own."""
+    config: str = "faithful"
+    """Parameters of an agent given by name, faithful or tuned; a checkpoint has its own."""
     starts: str = "1"
     """Number of episodes, from starts drawn from --seed, or a file of lines x,y[,heading]."""
     seed: int = 0
     """Of the starts and of the sensors' noise."""
     max_decisions: int = 100
     """An episode is given up after so many decisions."""
-    view: Literal["top", "chase", "overview", "side"] = "side"
-    """Camera; side: chase and top beside each other."""
+    view: str = "side"
+    """Camera: top, chase, overview, or side (chase and top beside each other)."""
     speed: float = 1.0
     """Video time runs so many times faster than simulated time."""
     fps: float = 30.0

@@ -7,7 +7,13 @@ from typing import Annotated, Any, Literal
 import tyro
 from rich.table import Table
 
-from nomad_agents.cli.common import console, interruptible, output_file, print_json
+from nomad_agents.cli.common import (
+    console,
+    interruptible,
+    output_file,
+    path_finding,
+    print_json,
+)
 from nomad_agents.cli.demo import LEARNING_ROWS, PAPER, UNSEEN_ROWS
 from nomad_agents.cli.progress import trial_progress
 from nomad_agents.experiments.learning import (
@@ -18,7 +24,8 @@ from nomad_agents.experiments.learning import (
     quartiles,
 )
 from nomad_agents.experiments.runs import Row, Run, do_runs
-from nomad_agents.reactive_planner import ConfigName, ReactivePlanner
+from nomad_agents.reactive_planner import ReactivePlanner
+from nomad_agents.registry import find_config
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
 from nomad_mj.errors import ConfigError
 
@@ -34,8 +41,8 @@ class Reproduce:
     """Which."""
     seeds: int = 20
     """Runs, with the seeds 0, 1, ...; at most 5 of each baseline, which learns nothing."""
-    config: ConfigName = "faithful"
-    """The paper's parameters, or better ones found since."""
+    config: str = "faithful"
+    """Parameters: faithful (the paper's) or tuned (better ones found since)."""
     room: str = DEFAULT_ROOM
     """Name of a room, or an MJCF file."""
     robot: str = DEFAULT_ROBOT
@@ -51,6 +58,9 @@ class Reproduce:
         """Run what is missing; return the exit code."""
         if self.seeds < 1 or self.jobs < 1:
             raise ConfigError(f"seeds {self.seeds}, jobs {self.jobs}: must be 1 or more")
+        find_config(self.config)
+        with path_finding(self.room, self.robot):
+            pass  # whatever is wrong with them is said now, and once
         screen = console(json_wanted=self.json)
         folder = output_file(f"{self.out}/rows", "probe", ".csv").parent
         rows: dict[str, list[Row]] = {}

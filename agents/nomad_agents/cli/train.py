@@ -15,7 +15,7 @@ from nomad_agents.cli.common import (
     print_json,
 )
 from nomad_agents.cli.progress import TrainingProgress
-from nomad_agents.reactive_planner import CONFIGS, ConfigName, ReactivePlanner
+from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner
 from nomad_agents.registry import find_agent, find_config
 from nomad_agents.training import Training, TrainingConfig, train, training_report
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, PathFinding
@@ -32,8 +32,8 @@ class Train:
     """Name of a robot, or an MJCF file."""
     agent: str = "reactive_planner"
     """Name of an agent that learns, or a checkpoint, .npz, to go on learning with what it knows."""
-    config: ConfigName = "faithful"
-    """The paper's parameters, or better ones found since."""
+    config: str = "faithful"
+    """Parameters: faithful (the paper's) or tuned (better ones found since)."""
     seed: int = 0
     """Of all randomness."""
     max_passes: int = 100

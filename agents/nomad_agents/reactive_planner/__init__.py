@@ -5,7 +5,6 @@ from nomad_agents.reactive_planner.config import (
     CONFIGS,
     FAITHFUL,
     TUNED,
-    ConfigName,
     PlannerConfig,
     ReactivePlannerConfig,
 )
@@ -17,7 +16,6 @@ __all__ = [
     "CONFIGS",
     "FAITHFUL",
     "TUNED",
-    "ConfigName",
     "Match",
     "Network",
     "Plan",

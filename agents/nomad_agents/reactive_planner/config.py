@@ -7,8 +7,6 @@ from typing import Literal
 from nomad_mj.motion import ActionSpec
 from nomad_mj.perception import SituationSpec
 
-ConfigName = Literal["faithful", "tuned"]
-
 
 @dataclass(frozen=True)
 class PlannerConfig:
