@@ -47,7 +47,7 @@ def find_agent(name_or_path: str, layout: SensorLayout, config: ReactivePlannerC
     except (OSError, RuntimeError):  # a name too long, a home that there is not
         exists = False
     if path.suffix != ".npz" and not exists:
-        raise UnknownNameError("agent", name_or_path, [*AGENTS, "or a checkpoint file, .npz"])
+        raise UnknownNameError("agent", name_or_path, [*AGENTS, "CHECKPOINT.npz"])
     checkpoint = load_checkpoint(path)
     if checkpoint.layout != layout:
         raise CheckpointError(
