@@ -2,7 +2,7 @@
 
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import dm_env
@@ -50,6 +50,11 @@ class Move(NamedTuple):
     ticks: int = 0
 
 
+def _see_in_time(config: MotionConfig, nearest: float) -> MotionConfig:
+    """Return a config whose security distance the sensors can tell: they read no less [m]."""
+    return replace(config, security_distance=max(config.security_distance, 1.1 * nearest))
+
+
 class PathFinding(dm_env.Environment):
     """Find the way to the goal, one move at a time.
 
@@ -84,6 +89,7 @@ class PathFinding(dm_env.Environment):
         self.on_control_step: Callable[[dm_env.TimeStep], None] | None = None
         self._time_limit = time_limit
         layout = self.scene.robot.layout
+        self._motion = _see_in_time(self.config.motion, min(r.min_range for r in layout.rings))
         self._bearings = np.concatenate([ring.bearings for ring in layout.rings])
         self._over = True
         self._ticks = 0
@@ -162,7 +168,7 @@ class PathFinding(dm_env.Environment):
             float(np.hypot(x, y)),
             wheels,
             self.scene.robot.limits,
-            self.config.motion,
+            self._motion,
             CONTROL_TIMESTEP,
         )
         watched, ahead = heading, self._ahead(heading, turret)

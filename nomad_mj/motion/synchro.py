@@ -25,7 +25,8 @@ class MotionConfig:
     Attributes
     ----------
     security_distance : float
-        A virtual collision is something ahead that is nearer than this [m].
+        A virtual collision is something ahead that is nearer than this [m]; path finding raises
+        it to what the robot's sensors can tell.
     ahead : float
         Half the angle that counts as ahead [rad].
     retract : float
