@@ -96,14 +96,10 @@ def run_episode(
     step = env.reset(seed, start)
     agent.start_episode()
     percept = percept_of(step.observation, agent.layout, agent.situation)
-    counts = dict.fromkeys(("decisions", "reactions", "unmatched"), 0)
-    outcomes: list[int] = []
-    duration = driven = 0.0
-    clearance = float(step.observation["clearance"])
-    reached = False
-    while not step.last() and counts["decisions"] < max_decisions:
+    tally = _Tally(float(step.observation["clearance"]))
+    while not step.last() and tally.decisions < max_decisions:
         decision = agent.act(percept, explore)
-        counts["unmatched"] += decision.unmatched
+        tally.unmatched += decision.unmatched
         if decision.kind == "none":
             break  # the agent does not know how to act
         if watch is not None:
@@ -111,29 +107,52 @@ def run_episode(
         step = env.step(decision.action)
         if watch is not None:
             watch(Turn(percept, decision, step))
-        seen = step.observation
-        counts["decisions"] += 1
-        counts["reactions"] += decision.kind == "reacted"
-        outcomes.append(int(seen["outcome"]))
-        duration += float(seen["duration"])
-        driven += float(seen["driven"])
-        clearance = min(clearance, float(seen["clearance"]))
-        reached = step.last() and step.discount == 0.0
-        after = percept_of(seen, agent.layout, agent.situation)
-        if explore is not None and reached:
+        tally.take_in(decision, step)
+        after = percept_of(step.observation, agent.layout, agent.situation)
+        if explore is not None and tally.reached:
             agent.reach_goal(percept, decision, float(step.reward))
         elif explore is not None:
-            collided = outcomes[-1] in (Outcome.VIRTUAL_COLLISION, Outcome.BUMPED)
-            agent.learn(percept, decision, float(step.reward), collided, after)
+            agent.learn(percept, decision, float(step.reward), tally.collided, after)
         percept = after
-    return Episode(
-        reached,
-        counts["decisions"],
-        counts["reactions"],
-        counts["unmatched"],
-        outcomes.count(Outcome.VIRTUAL_COLLISION),
-        outcomes.count(Outcome.BUMPED),
-        duration,
-        driven,
-        clearance,
-    )
+    return tally.episode()
+
+
+class _Tally:
+    """Counts up what an episode takes."""
+
+    def __init__(self, clearance: float) -> None:
+        self.decisions = self.reactions = self.unmatched = 0
+        self.outcomes: list[int] = []
+        self.duration = self.driven = 0.0
+        self.clearance = clearance
+        self.reached = False
+
+    @property
+    def collided(self) -> bool:
+        """Whether a virtual collision or a contact ended the newest move."""
+        return self.outcomes[-1] in (Outcome.VIRTUAL_COLLISION, Outcome.BUMPED)
+
+    def take_in(self, decision: Decision, step: dm_env.TimeStep) -> None:
+        """Count a decision and the move it led to."""
+        seen = step.observation
+        self.decisions += 1
+        self.reactions += decision.kind == "reacted"
+        self.outcomes.append(int(seen["outcome"]))
+        self.duration += float(seen["duration"])
+        self.driven += float(seen["driven"])
+        self.clearance = min(self.clearance, float(seen["clearance"]))
+        self.reached = step.last() and step.discount == 0.0
+
+    def episode(self) -> Episode:
+        """Return the sums."""
+        return Episode(
+            self.reached,
+            self.decisions,
+            self.reactions,
+            self.unmatched,
+            self.outcomes.count(Outcome.VIRTUAL_COLLISION),
+            self.outcomes.count(Outcome.BUMPED),
+            self.duration,
+            self.driven,
+            self.clearance,
+        )
