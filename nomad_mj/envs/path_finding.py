@@ -20,7 +20,7 @@ from nomad_mj.motion import (
 )
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.tasks import MotorEnvironment, NavigationPhysics, Start
-from nomad_mj.types import FloatArray
+from nomad_mj.types import FloatArray, IntArray
 
 _TURRET_GAIN = 4.0  # [1/s] with which the turret holds its direction
 
@@ -171,7 +171,7 @@ class PathFinding(dm_env.Environment):
             self._motion,
             CONTROL_TIMESTEP,
         )
-        watched, ahead = heading, self._ahead(heading, turret)
+        watched, (ahead, slack) = heading, self._ahead(heading, turret)
         distance, driven, ticks = 0.0, 0.0, 0
         clearance = np.inf  # until the move is under way
         assert self._inner is not None
@@ -179,8 +179,8 @@ class PathFinding(dm_env.Environment):
         while True:
             if drive.motion_heading != watched:
                 watched = drive.motion_heading
-                ahead = self._ahead(watched, turret)
-            free = float(np.minimum.reduce(task.ranges.take(ahead), initial=np.inf))
+                ahead, slack = self._ahead(watched, turret)
+            free = float(np.minimum.reduce(task.ranges.take(ahead) + slack, initial=np.inf))
             speed, steer = drive.command(distance, wheels, free, bumped)
             if drive.done:
                 return Move(drive.outcome, clearance, driven, ticks)
@@ -201,10 +201,15 @@ class PathFinding(dm_env.Environment):
         _, _, wheels, turret = self._inner.observation["odometry"].tolist()
         return wheels, turret
 
-    def _ahead(self, heading: float, turret: float) -> Any:
-        """Return the indices of the sensors that look within `ahead` of a heading [rad]."""
-        off = (self._bearings + turret - heading + np.pi) % (2 * np.pi) - np.pi
-        return np.flatnonzero(np.abs(off) <= self.config.motion.ahead + 1e-9)
+    def _ahead(self, heading: float, turret: float) -> tuple[IntArray, FloatArray]:
+        """Return the sensors that look before the robot, and how much nearer things may be there.
+
+        Beside it, beyond `ahead`, that is `beside` [m]: corners pass there between two sensors.
+        """
+        off = np.abs((self._bearings + turret - heading + np.pi) % (2 * np.pi) - np.pi)
+        before = np.flatnonzero(off <= max(np.pi / 2, self._motion.ahead) + 1e-9)
+        slack = np.where(off[before] <= self._motion.ahead + 1e-9, 0.0, self._motion.beside)
+        return before, slack
 
     def _observe(self, move: Move) -> "OrderedDict[str, Any]":
         assert self._inner is not None

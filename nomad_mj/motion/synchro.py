@@ -29,6 +29,8 @@ class MotionConfig:
         it to what the robot's sensors can tell.
     ahead : float
         Half the angle that counts as ahead [rad].
+    beside : float
+        From there to a right angle things may be nearer by this [m].
     retract : float
         How far the robot backs off after a virtual collision [m], if there is room behind it.
     braking : float
@@ -41,6 +43,7 @@ class MotionConfig:
 
     security_distance: float = 0.05
     ahead: float = math.radians(75)
+    beside: float = 0.02
     retract: float = 0.3
     braking: float = 0.6
     creep: float = 0.05
@@ -50,6 +53,7 @@ class MotionConfig:
         for field, least, most in (
             ("security_distance", 0.0, math.inf),
             ("ahead", 0.0, math.pi),
+            ("beside", 0.0, math.inf),
             ("retract", 0.0, math.inf),
             ("braking", 0.05, 1.0),
             ("creep", 0.01, math.inf),
@@ -154,7 +158,7 @@ class SynchroMove:
         wheels : float
             Direction of the wheels [rad].
         free : float
-            Shortest reading ahead, that is within `config.ahead` of `motion_heading` [m].
+            Shortest reading ahead, that is about `motion_heading` [m].
         bumped : bool
             Whether a bumper was touched since the last call.
         """
