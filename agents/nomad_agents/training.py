@@ -1,9 +1,9 @@
 """Training by protocol P0: passes over all starts of a room, a greedy test after each.
 
-Training ends when one test solves every start, that is, reaches the goal from it.
-Every episode has its own streams of random
-numbers, derived from the seed, the pass and the start, so that training can be interrupted
-between any two episodes and go on to the same bits.
+Training ends when a test solves every start, that is, reaches the goal from it; the test of the
+first pass does not count, since under noise one can be passed by luck. Every episode has its own
+streams of random numbers, derived from the seed, the pass and the start, so that training can be
+interrupted between any two episodes and go on to the same bits.
 """
 
 import time
@@ -29,6 +29,8 @@ class TrainingConfig:
     ----------
     seed : int
         Of all randomness.
+    min_passes : int
+        Make so many passes at least.
     max_passes : int
         Give up after so many passes.
     max_decisions : int
@@ -38,6 +40,7 @@ class TrainingConfig:
     """
 
     seed: int = 0
+    min_passes: int = 2
     max_passes: int = 100
     max_decisions: int = 0
     episode_decisions: int = 100
@@ -48,7 +51,7 @@ class TrainingConfig:
             raise ConfigError(f"seed {self.seed}: must be 0 or more")
         if self.max_decisions < 0:
             raise ConfigError(f"max_decisions {self.max_decisions}: must be 0 (no limit) or more")
-        for name in ("max_passes", "episode_decisions", "test_decisions"):
+        for name in ("min_passes", "max_passes", "episode_decisions", "test_decisions"):
             if getattr(self, name) < 1:
                 raise ConfigError(f"{name} {getattr(self, name)}: must be 1 or more")
 
@@ -127,7 +130,7 @@ def train(
                 _test(env, agent, config, training)
             else:
                 _learn(env, agent, config, training)
-            _advance(training, starts)
+            _advance(training, starts, config.min_passes)
         except BaseException:  # half an episode learnt would not go on to the same bits
             vars(training).update(vars(before[0]))
             agent.network.restore(before[1])
@@ -176,14 +179,14 @@ def _test(
     training.sim_s += episode.duration
 
 
-def _advance(training: Training, starts: int) -> None:
+def _advance(training: Training, starts: int, min_passes: int) -> None:
     """Go on to the next start, to the test, or to the next pass."""
     training.next_start += 1
     if training.next_start < starts:
         return
     training.next_start = 0
     if training.testing:
-        training.done = training.solved == starts
+        training.done = training.solved == starts and training.passes >= min_passes
         training.passes += not training.done
     training.testing = not training.testing
 

@@ -49,7 +49,9 @@ class Train:
 
     def run(self) -> int:
         """Train; return the exit code."""
-        settings = TrainingConfig(self.seed, self.max_passes, self.max_decisions)
+        settings = TrainingConfig(
+            self.seed, max_passes=self.max_passes, max_decisions=self.max_decisions
+        )
         screen = console(json_wanted=self.json)
         with path_finding(self.room, self.robot) as env, interruptible():
             name = f"{env.scene.arena.name}_{ReactivePlanner.name}_{self.seed}"
