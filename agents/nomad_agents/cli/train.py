@@ -24,7 +24,7 @@ from nomad_mj.errors import CheckpointError, ConfigError
 
 @dataclass(frozen=True)
 class Train:
-    """Train the reactive planner until one greedy test solves every start of the room."""
+    """Train the reactive planner until a greedy test solves every start of the room."""
 
     room: str = DEFAULT_ROOM
     """Name of a room, or an MJCF file."""
