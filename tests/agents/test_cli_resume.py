@@ -61,7 +61,7 @@ def test_killed_and_interrupted_it_ends_with_the_same_bits(
     command = [*NOMAD, "train", "--room", str(small_room), "--out", str(path), "--resume"]
     endings = [
         interrupted(command, path, number, after)
-        for number, after in ((signal.SIGKILL, 0.1), (signal.SIGINT, 0.1), (signal.SIGTERM, 0.1))
+        for number, after in ((signal.SIGKILL, 0.02), (signal.SIGINT, 0.04), (signal.SIGTERM, 0.0))
     ]
     told = "nomad-mj: interrupted\n"
     assert endings == [(-signal.SIGKILL, ""), (130, told), (130, told)]
