@@ -42,7 +42,12 @@ def interrupted(command: list[str], path: Path, number: int, after: float) -> tu
     """Start a command, signal it some time after it wrote its first checkpoint."""
     before = path.stat().st_mtime_ns if path.exists() else 0
     process = subprocess.Popen(
-        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        command,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        # A shell lets what it runs in the background ignore Ctrl-C, and so would this.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     began = time.monotonic()
     while not path.exists() or path.stat().st_mtime_ns == before:
