@@ -1,29 +1,47 @@
-"""Many runs of an experiment in parallel processes, each remembered in a file of its own.
+"""Many runs of experiments in parallel processes, each remembered in a file of its own.
 
 A run that is on file is not done again: what was killed goes on where it was, to the same rows.
 """
 
 import json
 import multiprocessing
+import platform
 import re
+import signal
+import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import cattrs
+
 from nomad_agents.checkpoint import write_atomically
+from nomad_agents.registry import find_config
 from nomad_mj.errors import OutputError
 
 Row = dict[str, Any]
+PACKAGES = ("nomad-mj", "mujoco", "numpy")
 
 
 @dataclass(frozen=True)
 class Run:
-    """One run: what is done, by which agent and configuration, with which seed."""
+    """One run: what is done, in which case of it, by whom, where, with which seed.
+
+    Attributes
+    ----------
+    experiment, case : str
+        As on the command line, ``fig8``; which part of it, such as ``2 m``.
+    agent, config, room, robot : str
+        Names, or files of rooms and robots.
+    seed : int
+        Of all randomness.
+    """
 
     experiment: str
+    case: str
     agent: str
     config: str
     room: str
@@ -32,19 +50,50 @@ class Run:
 
     @property
     def file_name(self) -> str:
-        """Name of the file that holds its row."""
-        parts = (self.experiment, self.agent, self.config, self.room, self.robot)
-        words = [re.sub(r"[^A-Za-z0-9]+", "-", Path(part).stem) for part in parts]
+        """Name of the file that holds its result."""
+        places = (Path(self.room).stem, Path(self.robot).stem)
+        parts = (self.experiment, self.case, self.agent, self.config, *places)
+        words = [re.sub(r"[^A-Za-z0-9.]+", "-", part) for part in parts]
         return f"{'_'.join(words)}_{self.seed:04d}.json"
 
 
-def _key(run: Run) -> dict[str, Any]:
-    """Return what a row must agree with to be this run's."""
-    return {**asdict(run), "nomad_mj": version("nomad-mj"), "mujoco": version("mujoco")}
+@dataclass
+class Result:
+    """What came of a run; JSON all the way down.
+
+    Attributes
+    ----------
+    run : Run
+        Which.
+    row : dict
+        The run's numbers by name; the same on every machine.
+    episodes : list of dict
+        The same of each episode.
+    curve : list of dict
+        While learning, one entry a pass.
+    pictures : dict
+        What figures are drawn from: see `pictures`.
+    machine : dict
+        Where and with what it was done, and how long it took; differs between machines.
+    """
+
+    run: Run
+    row: Row
+    episodes: list[Row] = field(default_factory=list[Row])
+    curve: list[Row] = field(default_factory=list[Row])
+    pictures: Row = field(default_factory=Row)
+    machine: Row = field(default_factory=Row)
 
 
-def stored_row(run: Run, folder: Path) -> Row | None:
-    """Return the row of a run that is on file, None if there is none of this version.
+def _key(run: Run) -> Row:
+    """Return what a file must agree with to be this run's: no stale numbers of another version."""
+    key = {**asdict(run), "packages": {name: version(name) for name in PACKAGES}}
+    key["parameters"] = cattrs.unstructure(find_config(run.config))
+    return json.loads(json.dumps(key))
+
+
+def stored_result(run: Run, folder: Path) -> Result | None:
+    """Return the result of a run that is on file, None if there is none of this version.
 
     Raises
     ------
@@ -56,54 +105,80 @@ def stored_row(run: Run, folder: Path) -> Row | None:
         return None
     try:
         held = json.loads(path.read_text(encoding="utf-8"))
-        key, row = dict(held["run"]), dict(held["row"])
+        if held["key"] != _key(run):
+            return None
+        return Result(run, **{name: held[name] for name in _CONTENTS})
     except (OSError, ValueError, KeyError, TypeError):
-        raise OutputError(f"{str(path)!r} is no row of an experiment: remove it") from None
-    return row if key == _key(run) else None
+        raise OutputError(f"{str(path)!r} is no result of an experiment: remove it") from None
+
+
+_CONTENTS = ("row", "episodes", "curve", "pictures", "machine")
+
+
+def _store(result: Result, folder: Path) -> None:
+    held = {"key": _key(result.run), **{name: getattr(result, name) for name in _CONTENTS}}
+    text = json.dumps(held, indent=1).encode()
+    write_atomically(folder / result.run.file_name, lambda file: file.write(text))
+
+
+def _ignore_interrupts() -> None:
+    """Leave Ctrl-C to the process that holds the pool: it stops the others."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _timed(work: Callable[[Run, Path], Result], run: Run, folder: Path) -> Result:
+    began = time.perf_counter()
+    result = work(run, folder)
+    wall = round(time.perf_counter() - began, 3)
+    result.machine |= {"system": platform.platform(), "processor": platform.machine()}
+    result.machine |= {"python": platform.python_version(), "wall_s": wall}
+    _store(result, folder)
+    return result
 
 
 def do_runs(
     runs: Sequence[Run],
-    work: Callable[[Run], Row],
+    work: Callable[[Run, Path], Result],
     folder: Path,
     jobs: int,
-    after_run: Callable[[], None],
-) -> list[Row]:
-    """Return the rows of all runs, in their order, doing those that are not on file.
+    after_run: Callable[[Result], None],
+) -> list[Result]:
+    """Return the results of all runs, in their order, doing those that are not on file.
 
     Parameters
     ----------
     runs : sequence of Run
         What to do.
     work : callable
-        Does a run in a process of its own; a function of a module.
+        Does a run in a process of its own, given the folder too; a function of a module.
     folder : Path
-        Where rows are kept.
+        Where results are kept.
     jobs : int
         Number of processes.
     after_run : callable
-        Called once for each run, when its row is there.
+        Called once for each run, when its result is there.
     """
-    rows = {run: stored_row(run, folder) for run in runs}
-    missing = [run for run, row in rows.items() if row is None]
-    for _ in range(len(runs) - len(missing)):
-        after_run()
+    results = {run: stored_result(run, folder) for run in runs}
+    for result in results.values():
+        if result is not None:
+            after_run(result)
+    missing = [run for run, result in results.items() if result is None]
     if missing:
         # Spawned, not forked: a process starts without what this one has done so far.
         context = multiprocessing.get_context("spawn")
-        pool = ProcessPoolExecutor(min(jobs, len(missing)), mp_context=context)
+        pool = ProcessPoolExecutor(
+            min(jobs, len(missing)), mp_context=context, initializer=_ignore_interrupts
+        )
         try:
-            waiting = {pool.submit(work, run): run for run in missing}
+            waiting = [pool.submit(_timed, work, run, folder) for run in missing]
             for future in as_completed(waiting):
-                run = waiting[future]
-                rows[run] = future.result()
-                _store(run, rows[run] or {}, folder)
-                after_run()
+                result = future.result()
+                results[result.run] = result
+                after_run(result)
+        except BaseException:
+            for process in list(pool._processes.values()):  # pyright: ignore[reportPrivateUsage]
+                process.terminate()
+            raise
         finally:
             pool.shutdown(cancel_futures=True)
-    return [row for row in rows.values() if row is not None]
-
-
-def _store(run: Run, row: Row, folder: Path) -> None:
-    text = json.dumps({"run": _key(run), "row": row}, indent=1).encode()
-    write_atomically(folder / run.file_name, lambda file: file.write(text))
+    return [result for result in results.values() if result is not None]
