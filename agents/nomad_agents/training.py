@@ -16,7 +16,7 @@ import numpy as np
 from nomad_agents.episode import run_episode
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_mj.envs import PathFinding
-from nomad_mj.errors import ConfigError
+from nomad_mj.errors import ConfigError, StartError
 
 _LEARN, _TEST, _EXPLORE = range(3)  # kinds of streams
 
@@ -37,6 +37,8 @@ class TrainingConfig:
         Give up after so many decisions, at the end of an episode; 0 for no limit.
     episode_decisions, test_decisions : int
         A learning episode, a test episode is given up after so many decisions.
+    starts : tuple of int
+        Numbers of the room's starts to train on; all if empty.
     """
 
     seed: int = 0
@@ -45,6 +47,7 @@ class TrainingConfig:
     max_decisions: int = 0
     episode_decisions: int = 100
     test_decisions: int = 50
+    starts: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         if self.seed < 0:
@@ -54,6 +57,19 @@ class TrainingConfig:
         for name in ("min_passes", "max_passes", "episode_decisions", "test_decisions"):
             if getattr(self, name) < 1:
                 raise ConfigError(f"{name} {getattr(self, name)}: must be 1 or more")
+
+    def chosen(self, starts: int) -> tuple[int, ...]:
+        """Return the numbers of the starts to train on, in a room that has so many.
+
+        Raises
+        ------
+        StartError
+            A number that no start of the room has.
+        """
+        for start in self.starts:
+            if not 0 <= start < starts:
+                raise StartError(f"start {start}: the room's are numbered 0 to {starts - 1}")
+        return self.starts or tuple(range(starts))
 
 
 @dataclass
@@ -119,7 +135,7 @@ def train(
         Called after each episode: to show progress, to save; what it raises ends the training
         between two episodes.
     """
-    starts = len(env.scene.arena.starts)
+    starts = config.chosen(len(env.scene.arena.starts))
     while not training.done and training.passes <= config.max_passes:
         if config.max_decisions and training.decisions >= config.max_decisions:
             break
@@ -127,10 +143,10 @@ def train(
         before = replace(training), agent.network.arrays(), agent.plannings
         try:
             if training.testing:
-                _test(env, agent, config, training)
+                _test(env, agent, config, training, starts)
             else:
-                _learn(env, agent, config, training)
-            _advance(training, starts, config.min_passes)
+                _learn(env, agent, config, training, starts)
+            _advance(training, len(starts), config.min_passes)
         except BaseException:  # half an episode learnt would not go on to the same bits
             vars(training).update(vars(before[0]))
             agent.network.restore(before[1])
@@ -143,14 +159,18 @@ def train(
 
 
 def _learn(
-    env: PathFinding, agent: ReactivePlanner, config: TrainingConfig, training: Training
+    env: PathFinding,
+    agent: ReactivePlanner,
+    config: TrainingConfig,
+    training: Training,
+    starts: tuple[int, ...],
 ) -> None:
     place = (training.passes, training.next_start)
     episode = run_episode(
         env,
         agent,
         seed=stream(config.seed, _LEARN, *place),
-        start=training.next_start,
+        start=starts[training.next_start],
         explore=np.random.default_rng(stream(config.seed, _EXPLORE, *place)),
         max_decisions=config.episode_decisions,
     )
@@ -163,7 +183,11 @@ def _learn(
 
 
 def _test(
-    env: PathFinding, agent: ReactivePlanner, config: TrainingConfig, training: Training
+    env: PathFinding,
+    agent: ReactivePlanner,
+    config: TrainingConfig,
+    training: Training,
+    starts: tuple[int, ...],
 ) -> None:
     if training.next_start == 0:
         training.solved = training.tested = 0
@@ -171,7 +195,7 @@ def _test(
         env,
         agent,
         seed=stream(config.seed, _TEST, training.passes, training.next_start),
-        start=training.next_start,
+        start=starts[training.next_start],
         max_decisions=config.test_decisions,
     )
     training.solved += episode.reached

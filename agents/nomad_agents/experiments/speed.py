@@ -73,22 +73,25 @@ def training_ratio(room: str, decisions: int = 400) -> float:
         return training.wall_s / bare_s
 
 
-def _filled_agent(scene: Scene) -> ReactivePlanner:
-    """Return an agent with as many exemplars as the bench asks for, random but plausible."""
+def _filled_agent(scene: Scene, exemplars: int) -> ReactivePlanner:
+    """Return an agent with so many exemplars, random but plausible."""
     agent = ReactivePlanner(scene.robot.layout, FAITHFUL)
     rng = np.random.default_rng(0)
-    for category in range(EXEMPLARS // 10):
+    categories = max(exemplars // 10, 1)
+    for category in range(categories):
         agent.network.add_category(rng.uniform(-1, 1, 2), -float(category))
-    for number in range(EXEMPLARS):
+    for number in range(exemplars):
         situation = rng.uniform(0, 1, FAITHFUL.situation.size)
-        agent.network.add_exemplar(situation, number % (EXEMPLARS // 10))
+        agent.network.add_exemplar(situation, number % categories)
     return agent
 
 
-def decision_times(room: str, repeats: int = 300) -> tuple[float, float]:
+def decision_times(
+    room: str, repeats: int = 300, exemplars: int = EXEMPLARS
+) -> tuple[float, float]:
     """Return the times of a reaction (perception to action) and of a planning, medians [s]."""
     with nomad_mj.load("path_finding", room=room, task_kwargs={"random": 0}) as env:
-        agent = _filled_agent(env.scene)
+        agent = _filled_agent(env.scene, exemplars)
         observation = env.reset(start=0).observation
         layout, config = env.scene.robot.layout, agent.config
         percept = percept_of(observation, layout, config.situation)

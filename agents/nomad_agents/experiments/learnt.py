@@ -1,0 +1,104 @@
+"""Agents that have learnt, with the curve of their learning, kept for the experiments after it."""
+
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import nomad_mj
+from nomad_agents.agent import Agent
+from nomad_agents.checkpoint import load_checkpoint, save_checkpoint
+from nomad_agents.experiments.experiment import LEARNER
+from nomad_agents.experiments.runs import Result, Row, Run, stored_result
+from nomad_agents.reactive_planner import ReactivePlanner
+from nomad_agents.registry import find_config, make_agent
+from nomad_agents.training import Training, TrainingConfig, train, training_report
+from nomad_mj.envs import PathFinding
+from nomad_mj.errors import OutputError
+
+TRAINING = "training"
+_MOST_PASSES = 40
+_PER_PASS = ("decisions", "reactions", "plannings", "virtual_collisions", "bumper_contacts")
+
+
+def learn(
+    env: PathFinding, agent: ReactivePlanner, config: TrainingConfig
+) -> tuple[Row, list[Row]]:
+    """Train an agent; return what it took and one entry of its learning curve a pass.
+
+    Returns
+    -------
+    dict
+        `training_report`, names beginning with ``learn_``; ``learn_solved_all``: whether the last
+        test solved every start.
+    list of dict
+        Counts since the beginning, and starts solved in the test after the pass.
+    """
+    curve: list[Row] = []
+    before = agent.plannings
+    starts = len(config.chosen(len(env.scene.arena.starts)))
+
+    def after_episode(training: Training) -> None:
+        if training.next_start == 0 and not training.testing:  # a test has just ended
+            held = asdict(training)
+            entry = {name: held[name] for name in _PER_PASS}
+            entry["plannings"] -= before
+            entry |= {"pass": len(curve) + 1, "solved": training.solved, "starts": starts}
+            curve.append(entry)
+
+    training = train(env, agent, config, Training(), after_episode)
+    report = training_report(env, agent, training) | {"starts": starts}
+    report["plannings"] -= before
+    del report["wall_s"]  # differs from run to run
+    report["solved_all"] = training.done
+    return {f"learn_{name}": value for name, value in report.items()}, curve
+
+
+def training_run(run: Run) -> Run:
+    """Return the run in which the agent of another run has learnt its room."""
+    return replace(run, experiment=TRAINING, case="", agent=LEARNER)
+
+
+def _checkpoint(run: Run, folder: Path) -> Path:
+    return (folder / "agents" / run.file_name).with_suffix(".npz")
+
+
+def keep_agent(run: Run, folder: Path, env: PathFinding, agent: ReactivePlanner) -> None:
+    """Save the agent as a run has left it."""
+    state = asdict(Training(plannings=agent.plannings)) | {"seed": run.seed}
+    room, robot = env.scene.arena.name, env.scene.robot.name
+    save_checkpoint(_checkpoint(run, folder), agent, room, robot, state)
+
+
+def kept_agent(run: Run, folder: Path) -> ReactivePlanner:
+    """Return the agent as a run has left it; raises CheckpointError if there is none."""
+    return load_checkpoint(_checkpoint(run, folder)).agent
+
+
+def train_room(run: Run, folder: Path) -> Result:
+    """Let an agent learn its room and keep it."""
+    with nomad_mj.load("path_finding", room=run.room, robot=run.robot) as env:
+        agent = ReactivePlanner(env.scene.robot.layout, find_config(run.config))
+        row, curve = learn(env, agent, TrainingConfig(run.seed, max_passes=_MOST_PASSES))
+        keep_agent(run, folder, env, agent)
+    return Result(run, row, curve=curve)
+
+
+def trained_agent(run: Run, folder: Path) -> tuple[ReactivePlanner, Result]:
+    """Return a fresh copy of the agent that learnt the room of `run`, and how it learnt.
+
+    Raises
+    ------
+    OutputError, CheckpointError
+        It is not on file: its training comes first, see `training_run`.
+    """
+    own = training_run(run)
+    result = stored_result(own, folder)
+    if result is None:
+        raise OutputError(f"{str(folder / own.file_name)!r} is missing: run the experiment again")
+    return kept_agent(own, folder), result
+
+
+def acting_agent(run: Run, folder: Path, env: PathFinding) -> Agent:
+    """Return the agent of a run: the trained one, or a baseline."""
+    if run.agent == LEARNER:
+        return trained_agent(run, folder)[0]
+    return make_agent(run.agent, env.scene.robot.layout, find_config(run.config))

@@ -1,0 +1,137 @@
+"""Every reading of the text that mattered, against its alternatives, one at a time."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+import nomad_mj
+from nomad_agents.experiments.experiment import (
+    LEARNER,
+    Experiment,
+    Showcase,
+    Study,
+    TableRow,
+    Verdict,
+    column,
+)
+from nomad_agents.experiments.learnt import learn, trained_agent
+from nomad_agents.experiments.measures import assess, episode_rows
+from nomad_agents.experiments.runs import Result, Run
+from nomad_agents.reactive_planner import ReactivePlanner, ReactivePlannerConfig
+from nomad_agents.registry import find_config
+from nomad_agents.training import TrainingConfig
+from nomad_mj.motion import MotionConfig
+
+_MOST_PASSES = 12
+_UNSEEN = 100
+_Change = Callable[[ReactivePlannerConfig], ReactivePlannerConfig]
+
+
+def _same(config: ReactivePlannerConfig) -> ReactivePlannerConfig:
+    return config
+
+
+class Variant(NamedTuple):
+    """What is different: in the agent, in the way it moves, in the least number of passes."""
+
+    agent: _Change = _same
+    motion: MotionConfig = MotionConfig()
+    min_passes: int = 2
+
+
+VARIANTS = {
+    "as is": Variant(),
+    "planner may run into things": Variant(
+        lambda c: replace(c, planner=replace(c.planner, occupied=1.1))
+    ),
+    "planner keeps no margin": Variant(lambda c: replace(c, planner=replace(c.planner, margin=0))),
+    "planner keeps 0.1 m": Variant(lambda c: replace(c, planner=replace(c.planner, margin=0.1))),
+    "k_ind 0.02": Variant(lambda c: replace(c, k_ind=0.02)),
+    "k_ind 0.1": Variant(lambda c: replace(c, k_ind=0.1)),
+    "direction on the circle": Variant(
+        lambda c: replace(c, situation=replace(c.situation, circular=True))
+    ),
+    "direction on the segment": Variant(
+        lambda c: replace(c, situation=replace(c.situation, circular=False))
+    ),
+    "memory of good actions": Variant(lambda c: replace(c, remember_good_actions=True)),
+    "sigma floor 0.1": Variant(lambda c: replace(c, sigma_floor=0.1)),
+    "sigma floor 0.001": Variant(lambda c: replace(c, sigma_floor=0.001)),
+    "unknown: stay": Variant(lambda c: replace(c, no_match="stay")),
+    "unknown: nearest": Variant(lambda c: replace(c, no_match="nearest")),
+    "one pass is enough": Variant(min_passes=1),
+    "no retreat": Variant(motion=MotionConfig(retract=0.0)),
+    "ahead ±45°": Variant(motion=MotionConfig(ahead=math.radians(45), beside=10.0)),
+    "ahead ±60°": Variant(motion=MotionConfig(ahead=math.radians(60), beside=10.0)),
+    "security distance 0.1 m": Variant(motion=MotionConfig(security_distance=0.1)),
+}
+
+
+class Ablations(Experiment):
+    """Which readings decide."""
+
+    name = "ablations"
+    title = "The readings of the text"
+    claim = "The behaviour does not depend much on the parameters' values."
+    source = "section 4, Table 1"
+    needs_trained = True
+    table = tuple(
+        TableRow(f"{case}: {label}", key, case, digits=digits, total=total)
+        for case in VARIANTS
+        for label, key, digits, total in (
+            ("runs that solve every start", "learn_solved_all", 0, True),
+            ("reactions", "learn_reactions", 0, False),
+            ("virtual collisions", "learn_virtual_collisions", 0, False),
+            ("bumper contacts", "learn_bumper_contacts", 0, False),
+            ("unseen starts without virtual collision", "strict_success_rate", 3, False),
+        )
+    )
+
+    def runs(self, study: Study) -> list[Run]:
+        """Return a run for each variant and seed."""
+        return self.plan_runs(study, list(VARIANTS), ())
+
+    def work(self, run: Run, folder: Path) -> Result:
+        """Learn the room with one thing changed."""
+        variant = VARIANTS[run.case]
+        config = variant.agent(find_config(run.config))
+        options = {"motion": variant.motion}
+        with nomad_mj.load(
+            "path_finding", room=run.room, robot=run.robot, task_kwargs=options
+        ) as env:
+            agent = ReactivePlanner(env.scene.robot.layout, config)
+            settings = TrainingConfig(
+                run.seed, min_passes=variant.min_passes, max_passes=_MOST_PASSES
+            )
+            row, curve = learn(env, agent, settings)
+            metrics, trials = assess(env, agent, run.seed, _UNSEEN)
+        return Result(run, row | metrics, episode_rows(trials), curve)
+
+    def judge(self, results: Sequence[Result]) -> Verdict:
+        """Count the variants that learn about as well."""
+        usual = float(np.median(column(results, "strict_success_rate", "as is")))
+        alike = [
+            column(results, "learn_solved_all", case).mean() >= 0.9
+            and np.median(column(results, "strict_success_rate", case)) >= usual - 0.05
+            for case in VARIANTS
+        ]
+        reason = (
+            f"{sum(alike)} of {len(alike)} variants solve every start in 9 of 10 runs and drive "
+            "within 5 points as well from unseen starts"
+        )
+        share = float(np.mean(alike))
+        if share >= 0.9:
+            return Verdict("holds", reason)
+        return Verdict("holds in part" if share >= 0.4 else "does not hold", reason)
+
+    def showcase(self, study: Study, folder: Path) -> Showcase:
+        """Show the agent as it is."""
+        run = Run(self.name, "as is", LEARNER, study.config, study.room, study.robot, 0)
+        agent, _ = trained_agent(run, folder)
+        return Showcase(
+            nomad_mj.load("path_finding", room=run.room, robot=run.robot), agent, [0, 1]
+        )

@@ -1,0 +1,76 @@
+"""Fig 7: the action taken at a lattice of places all over the room."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+import nomad_mj
+from nomad_agents.experiments.experiment import (
+    LEARNER,
+    PLANNER,
+    STRAIGHT,
+    Experiment,
+    Showcase,
+    Study,
+    TableRow,
+    Verdict,
+    column,
+)
+from nomad_agents.experiments.figures import lattice
+from nomad_agents.experiments.learnt import acting_agent, trained_agent
+from nomad_agents.experiments.measures import judge_actions
+from nomad_agents.experiments.pictures import LATTICE, action_map
+from nomad_agents.experiments.runs import Result, Run
+
+
+class Actions(Experiment):
+    """Fig 7."""
+
+    name = "fig7"
+    title = "The action at every place"
+    claim = "The situation-action rules cover the room: solution paths lead from any start."
+    source = "section 4, Fig 7"
+    table = (
+        TableRow("share of places whose situation is known", "known", digits=3),
+        TableRow("share of places with a suitable action", "suitable", digits=3),
+        TableRow("share of suitable actions among the known", "known_suitable", digits=3),
+        TableRow("categories that act somewhere", "acting"),
+    )
+
+    def runs(self, study: Study) -> list[Run]:
+        """Return a run a seed, and some of the baselines."""
+        return self.plan_runs(study, ("",), (STRAIGHT, PLANNER))
+
+    def work(self, run: Run, folder: Path) -> Result:
+        """Ask an agent what it does at each place."""
+        with nomad_mj.load("path_finding", room=run.room, robot=run.robot) as env:
+            agent = acting_agent(run, folder, env)
+            actions = action_map(env, agent, lattice(env.scene, LATTICE), run.seed)
+            result = Result(run, judge_actions(env, actions))
+        if run.agent == LEARNER:
+            result.row["acting"] = len({a["category"] for a in actions} - {-1})
+        else:
+            del result.row["known"], result.row["known_suitable"]  # they know no situations
+        if run.seed == 0:
+            result.pictures["actions"] = actions
+        return result
+
+    def judge(self, results: Sequence[Result]) -> Verdict:
+        """Ask for suitable actions nearly everywhere."""
+        suitable = float(np.median(column(results, "suitable")))
+        known = float(np.median(column(results, "known")))
+        reason = (
+            f"at {suitable:.0%} of the places the action leads on towards the goal, and {known:.0%} "
+            "of the situations are known"
+        )
+        if suitable >= 0.95:
+            return Verdict("holds", reason)
+        return Verdict("holds in part" if suitable >= 0.8 else "does not hold", reason)
+
+    def showcase(self, study: Study, folder: Path) -> Showcase:
+        """Show the trained robot from four other starts."""
+        run = self.runs(study)[0]
+        agent, _ = trained_agent(run, folder)
+        env = nomad_mj.load("path_finding", room=run.room, robot=run.robot)
+        return Showcase(env, agent, [3, 9, 18, 33][: len(env.scene.arena.starts)])

@@ -1,0 +1,130 @@
+"""Fig 13: out of a concave obstacle, with and without the memory of good actions."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+import nomad_mj
+from nomad_agents.evaluation import evaluate
+from nomad_agents.experiments.experiment import (
+    LEARNER,
+    PLANNER,
+    STRAIGHT,
+    Experiment,
+    Showcase,
+    Study,
+    TableRow,
+    Verdict,
+    column,
+)
+from nomad_agents.experiments.learnt import acting_agent, keep_agent, kept_agent, learn
+from nomad_agents.experiments.measures import DECISIONS, episode_rows
+from nomad_agents.experiments.pictures import way
+from nomad_agents.experiments.runs import Result, Run
+from nomad_agents.reactive_planner import ReactivePlanner
+from nomad_agents.registry import find_config
+from nomad_agents.training import TrainingConfig
+from nomad_mj.envs import PathFinding
+
+ROOM = "concave_room"
+START = 0  # the one in the concave side
+MEMORY = {"with memory": True, "without memory": False}
+ENOUGH = 2600  # reactions; the paper's 2547, rounded
+LIMIT = 6000  # decisions after which a run is given up
+_PAPER = {
+    "learn_reactions": ("2547", "about 20 000"),
+    "learn_plannings": ("716", ""),
+    "learn_virtual_collisions": ("282", ""),
+    "learn_categories": ("55", ""),
+    "learn_exemplars": ("154", ""),
+}
+
+
+def _rows(case: str, which: int) -> tuple[TableRow, ...]:
+    counts = (
+        ("reactions until then", "learn_reactions"),
+        ("plannings", "learn_plannings"),
+        ("virtual collisions", "learn_virtual_collisions"),
+        ("categories", "learn_categories"),
+        ("exemplars", "learn_exemplars"),
+    )
+    return (
+        TableRow(f"{case}: runs that find the way", "learn_solved_all", case, "1 of 1", total=True),
+        TableRow(f"{case}: in {ENOUGH} reactions or fewer", "soon", case, total=True),
+        *(TableRow(f"{case}: {text}", key, case, _PAPER[key][which]) for text, key in counts),
+    )
+
+
+def _open(run: Run) -> PathFinding:
+    return nomad_mj.load("path_finding", room=run.room, robot=run.robot)
+
+
+class Concave(Experiment):
+    """Fig 13."""
+
+    name = "fig13"
+    title = "Out of a concave obstacle"
+    claim = (
+        "With the memory of good actions the way out of a concave obstacle is learnt in 2547 "
+        "reactions; without it, it took about 20 000."
+    )
+    source = "section 5, Fig 13"
+    needs_trained = False
+    table = (
+        *_rows("with memory", 0),
+        *_rows("without memory", 1),
+        TableRow("goal reached, greedy", "reached", "with memory", digits=3),
+    )
+
+    def runs(self, study: Study) -> list[Run]:
+        """Return a run with and without memory for each seed, and some of the baselines."""
+        runs = self.plan_runs(study, list(MEMORY), (STRAIGHT, PLANNER), ROOM)
+        first = next(iter(MEMORY))  # the baselines remember nothing
+        return [run for run in runs if run.agent == LEARNER or run.case == first]
+
+    def work(self, run: Run, folder: Path) -> Result:
+        """Learn the way from the one start, then show it."""
+        result = Result(run, {})
+        with _open(run) as env:
+            if run.agent == LEARNER:
+                config = find_config(run.config)
+                config = replace(config, remember_good_actions=MEMORY[run.case])
+                agent = ReactivePlanner(env.scene.robot.layout, config)
+                settings = TrainingConfig(
+                    run.seed, max_passes=LIMIT, max_decisions=LIMIT, starts=(START,)
+                )
+                result.row, result.curve = learn(env, agent, settings)
+                row = result.row
+                row["soon"] = row["learn_solved_all"] and row["learn_reactions"] <= ENOUGH
+                if run.seed == 0:
+                    keep_agent(run, folder, env, agent)
+            else:
+                agent = acting_agent(run, folder, env)
+            start = env.scene.arena.starts[START]
+            trials = evaluate(env, agent, start[None], run.seed, DECISIONS)
+            result.row["reached"] = trials[0].episode.reached
+            result.episodes = episode_rows(trials)
+            if run.seed == 0:
+                result.pictures = {"ways": [way(trials[0])], "room": run.room}
+        return result
+
+    def judge(self, results: Sequence[Result]) -> Verdict:
+        """Ask for the paper's number of reactions, and that the memory helps."""
+        soon = column(results, "soon", "with memory")
+        with_memory, without = (
+            float(np.median(column(results, "learn_reactions", case))) for case in MEMORY
+        )
+        reason = (
+            f"with memory {int(soon.sum())} of {len(soon)} runs find the way in {ENOUGH} reactions "
+            f"or fewer, {with_memory:.0f} in the median; without it {without:.0f}"
+        )
+        if soon.mean() >= 0.85:
+            return Verdict("holds" if without > 2 * with_memory else "holds in part", reason)
+        return Verdict("holds in part" if soon.mean() >= 0.5 else "does not hold", reason)
+
+    def showcase(self, study: Study, folder: Path) -> Showcase:
+        """Show the way out."""
+        run = Run(self.name, "with memory", LEARNER, study.config, ROOM, study.robot, 0)
+        return Showcase(_open(run), kept_agent(run, folder), [START], subtitle="with memory")

@@ -1,0 +1,109 @@
+"""Noise of the range sensors: how much of it, of which kind, and echoes that do not come back."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+import nomad_mj
+from nomad_agents.experiments.experiment import (
+    LEARNER,
+    PLANNER,
+    STRAIGHT,
+    Experiment,
+    Showcase,
+    Study,
+    TableRow,
+    Verdict,
+    column,
+)
+from nomad_agents.experiments.learnt import keep_agent, kept_agent, learn
+from nomad_agents.experiments.measures import assess, episode_rows
+from nomad_agents.experiments.runs import Result, Run
+from nomad_agents.reactive_planner import ReactivePlanner
+from nomad_agents.registry import find_config, make_agent
+from nomad_agents.training import TrainingConfig
+from nomad_mj.envs import PathFinding
+from nomad_mj.tasks import RangeNoise
+
+_PAPER = "±15 %"
+NOISES = {
+    "none": RangeNoise("none", 0.0),
+    "±5 %": RangeNoise(level=0.05),
+    _PAPER: RangeNoise(level=0.15),
+    "±30 %": RangeNoise(level=0.30),
+    "Gaussian 15 %": RangeNoise("gaussian", 0.15),
+    "lost echoes": RangeNoise(level=0.15, grazing=math.radians(30)),
+}
+_MOST_PASSES = 20
+
+
+def _open(run: Run) -> PathFinding:
+    noise = {"range_noise": NOISES[run.case]}
+    return nomad_mj.load("path_finding", room=run.room, robot=run.robot, task_kwargs=noise)
+
+
+class Noise(Experiment):
+    """Learning and driving with worse sensors, and with better ones."""
+
+    name = "noise"
+    title = "Noisy range sensors"
+    claim = "The approach deals effectively with noisy sensors: readings are wrong by up to 15 %."
+    source = "sections 2.1 and 4"
+    needs_trained = False
+    table = tuple(
+        TableRow(f"{case}: {label}", key, case, digits=digits, total=total)
+        for case in NOISES
+        for label, key, digits, total in (
+            ("runs that solve every start", "learn_solved_all", 0, True),
+            ("reactions until then", "learn_reactions", 0, False),
+            ("goal reached from unseen starts", "success_rate", 3, False),
+            ("without any virtual collision", "strict_success_rate", 3, False),
+            ("bumper contacts while learning", "learn_bumper_contacts", 0, False),
+        )
+    )
+
+    def runs(self, study: Study) -> list[Run]:
+        """Return a run for each kind of noise, agent and seed."""
+        return self.plan_runs(study, list(NOISES), (STRAIGHT, PLANNER))
+
+    def work(self, run: Run, folder: Path) -> Result:
+        """Learn the room with this noise, then drive with it."""
+        noise = NOISES[run.case]
+        result = Result(run, {"level": noise.level, "kind": noise.kind})
+        with _open(run) as env:
+            layout, config = env.scene.robot.layout, find_config(run.config)
+            if run.agent == LEARNER:
+                agent = ReactivePlanner(layout, config)
+                settings = TrainingConfig(run.seed, max_passes=_MOST_PASSES)
+                row, result.curve = learn(env, agent, settings)
+                result.row |= row
+                if run.seed == 0:
+                    keep_agent(run, folder, env, agent)
+            else:
+                agent = make_agent(run.agent, layout, config)
+            row, trials = assess(env, agent, run.seed)
+            result.row |= row
+            result.episodes = episode_rows(trials)
+        return result
+
+    def judge(self, results: Sequence[Result]) -> Verdict:
+        """Ask for as good driving with the paper's noise as with none."""
+        without, paper, double = (
+            float(np.median(column(results, "success_rate", case)))
+            for case in ("none", _PAPER, "±30 %")
+        )
+        reason = (
+            f"the goal is reached from {paper:.1%} of unseen starts with the paper's noise, from "
+            f"{without:.1%} without any, from {double:.1%} with twice as much"
+        )
+        if paper >= without - 0.02:
+            return Verdict("holds" if double >= 0.9 else "holds in part", reason)
+        return Verdict("holds in part" if paper >= 0.9 else "does not hold", reason)
+
+    def showcase(self, study: Study, folder: Path) -> Showcase:
+        """Show the most noise."""
+        case = "±30 %"
+        run = Run(self.name, case, LEARNER, study.config, study.room, study.robot, 0)
+        return Showcase(_open(run), kept_agent(run, folder), [0, 1, 2], subtitle=f"noise {case}")
