@@ -1,7 +1,7 @@
 """Put a robot into a room: two MJCF files and the shared scene become one compiled model."""
 
 import warnings
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,7 +13,14 @@ import shapely
 from nomad_mj.arenas import Arena, FloorPlan, check_arena
 from nomad_mj.assets import find_robot, find_room, models_dir
 from nomad_mj.errors import ModelError
-from nomad_mj.robots import PREFIX, RobotDescription, describe_robot, set_rays_per_cone
+from nomad_mj.robots import (
+    PREFIX,
+    RobotDescription,
+    describe_robot,
+    report_surfaces,
+    set_rays_per_cone,
+    unclip_surfaces,
+)
 
 CONTROL_TIMESTEP = 0.05  # [s], the rate of the robot's own controller
 ROOM_PREFIX = "room/"
@@ -108,6 +115,7 @@ def build_scene(
     robot: str | Path,
     *,
     rays_per_cone: int | None = None,
+    specular_rings: Sequence[str] = (),
 ) -> Scene:
     """Compile a room and a robot into one model.
 
@@ -117,6 +125,9 @@ def build_scene(
         A name (see `assets.rooms` and `assets.robots`) or an MJCF file.
     rays_per_cone : int, optional
         Overrides how many rays sample a cone of several rays.
+    specular_rings : sequence of str
+        Rings of range sensors whose rays report the surfaces they strike, as `RangeNoise.grazing`
+        needs it; they take a little longer.
 
     Raises
     ------
@@ -128,6 +139,7 @@ def build_scene(
     room_spec, robot_spec = _read("room", room_path), _read("robot", robot_path)
     if rays_per_cone is not None:
         set_rays_per_cone(robot_spec, rays_per_cone)
+    report_surfaces(robot_spec, specular_rings)
     try:
         model = _compile(room_spec, robot_spec)
     except (ValueError, RuntimeError) as error:
@@ -136,6 +148,7 @@ def build_scene(
             f"room {str(room)!r} and robot {str(robot)!r} do not fit together: {reason}"
         ) from None
     description = describe_robot(model, robot_path.stem)
+    unclip_surfaces(model)
     arena = Arena.from_model(model, room_path.stem)
     plan = FloorPlan.from_model(model, description.height, exclude_body_prefix=PREFIX)
     check_arena(plan, arena, description.layout.radius)

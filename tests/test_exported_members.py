@@ -21,7 +21,7 @@ PUBLIC = {
     "nomad_mj.arenas": "Arena FloorPlan Geodesic check_arena",
     "nomad_mj.robots": (
         "ACTUATORS ENCODERS JOINTS PREFIX RayIndex RobotDescription describe_robot group_rays "
-        "set_rays_per_cone"
+        "report_surfaces set_rays_per_cone unclip_surfaces"
     ),
     "nomad_mj.tasks": (
         "MotorConfig MotorEnvironment MotorTask NavigationPhysics OdometryNoise RangeNoise Start "

@@ -10,7 +10,7 @@ import numpy as np
 from nomad_mj.envs.path_finding import PathFinding, PathFindingConfig
 from nomad_mj.errors import ConfigError, UnknownNameError
 from nomad_mj.scene import Scene, build_scene
-from nomad_mj.tasks import MotorConfig, MotorEnvironment, MotorTask
+from nomad_mj.tasks import MotorConfig, MotorEnvironment, MotorTask, RangeNoise
 
 TASKS = ("motor", "path_finding")
 DEFAULT_ROOM = "paper_room"
@@ -92,7 +92,13 @@ def load(
         known += [f.name for f in fields(PathFindingConfig)]
     _refuse("task option", options, known)
     _refuse("environment option", environment, accepts)
-    scene = build_scene(room, robot, rays_per_cone=options.pop("rays_per_cone", None))
+    noise: RangeNoise = options.get("range_noise", RangeNoise())
+    scene = build_scene(
+        room,
+        robot,
+        rays_per_cone=options.pop("rays_per_cone", None),
+        specular_rings=noise.specular_rings if noise.grazing is not None else (),
+    )
     if task_name == "motor":
         return MotorEnvironment(make_motor(scene, options), **environment)
     config = _config(PathFindingConfig, options)

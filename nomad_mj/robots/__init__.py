@@ -9,6 +9,7 @@ from nomad_mj.robots.description import (
 )
 from nomad_mj.robots.rays import set_rays_per_cone
 from nomad_mj.robots.rings import PREFIX, RayIndex, group_rays
+from nomad_mj.robots.surfaces import report_surfaces, unclip_surfaces
 
 __all__ = [
     "ACTUATORS",
@@ -19,5 +20,7 @@ __all__ = [
     "RobotDescription",
     "describe_robot",
     "group_rays",
+    "report_surfaces",
     "set_rays_per_cone",
+    "unclip_surfaces",
 ]

@@ -16,6 +16,12 @@ from nomad_mj.errors import ModelError
 from nomad_mj.types import FloatArray, IntArray, RangeRing
 
 PREFIX = "robot/"  # of everything that belongs to the robot in a compiled scene
+_FIELD = mujoco.mjtRayDataField
+# What a ray reports that tells how a surface lies; an ordinary one reports the distance alone.
+SURFACE_DATA = sum(
+    1 << int(field)
+    for field in (_FIELD.mjRAYDATA_DIST, _FIELD.mjRAYDATA_DIR, _FIELD.mjRAYDATA_NORMAL)
+)
 _NAME = re.compile(r"(?P<ring>.*?)(?:_(?P<ray>\d+))?_(?P<cone>\d+)")
 
 
@@ -32,6 +38,9 @@ class RayIndex(NamedTuple):
         From a cone's site to the robot's perimeter [m]; negative where the site is outside.
     minimum, maximum : array (C,)
         Limits of the readings [m].
+    specular : array (S,)
+        Indices into `address` of the rays that report the surfaces they strike; empty unless the
+        scene was built with `specular_rings`.
     """
 
     address: IntArray
@@ -39,6 +48,7 @@ class RayIndex(NamedTuple):
     offset: FloatArray
     minimum: FloatArray
     maximum: FloatArray
+    specular: IntArray
 
 
 def group_rays(names: list[str]) -> dict[str, dict[int, list[int]]]:
@@ -79,6 +89,12 @@ def _ring(
         gaps = np.diff(around, append=around[0] + 2 * np.pi)
         spread = float(max(gaps.min() / 2, 1e-3)) if len(bearings) > 1 else np.pi / 12
     return RangeRing(name, tuple(bearings), spread, minimum, cutoff if cutoff > 0 else 10.0)
+
+
+def reporting_surfaces(model: mujoco.MjModel) -> IntArray:
+    """Return the indices of the rangefinders that report the surfaces they strike."""
+    rangefinder = model.sensor_type == mujoco.mjtSensor.mjSENS_RANGEFINDER
+    return np.flatnonzero(rangefinder & (model.sensor_intprm[:, 0] == SURFACE_DATA))
 
 
 def index_rays(
@@ -134,4 +150,6 @@ def index_rays(
             f"such as sonar_0_0; rangefinders it has: {', '.join(names) or 'none'}"
         )
     offset, minimum, maximum = np.array(rows).T
-    return RayIndex(np.array(address), np.array(first), offset, minimum, maximum), tuple(rings)
+    specular = np.flatnonzero(np.isin(address, model.sensor_adr[reporting_surfaces(model)]))
+    rays = RayIndex(np.array(address), np.array(first), offset, minimum, maximum, specular)
+    return rays, tuple(rings)

@@ -81,6 +81,10 @@ class MotorTask(control.Task):
     ) -> None:
         self.scene = scene
         self.config = config or MotorConfig()
+        if self.config.range_noise.grazing is not None and not len(scene.robot.rays.specular):
+            raise ConfigError(
+                "range noise grazing: needs a scene that was built with its specular_rings"
+            )
         self._start: Start = None
         self.seed(random)
         self._slices: list[tuple[str, int, int]] = []

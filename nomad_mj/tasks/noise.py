@@ -1,5 +1,6 @@
 """How real sensors err: range readings and odometry."""
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -14,7 +15,14 @@ _BLOCK = 64  # control steps whose noise is drawn at once
 
 @dataclass(frozen=True)
 class RangeNoise:
-    """Multiplicative noise of the range readings, d' = d (1 + e) (section 2.1 of the paper).
+    """How range readings err: d' = d (1 + e) (section 2.1 of the paper), and echoes that are lost.
+
+    To the wavelength of a sonar, some 7 mm, a wall is a mirror: a pulse that strikes it at a
+    grazing angle goes off and never comes back, and the sensor reads its maximum range (R. Kuc and
+    M. W. Siegel, "Physically based simulation model for acoustic sensor robot navigation", IEEE
+    Trans. PAMI 9 (1987); J. J. Leonard and H. F. Durrant-Whyte, "Directed sonar sensing for mobile
+    robot navigation", 1992). Each ray of a cone is judged by itself, and the cone reads the
+    shortest that comes back. What edges scatter, and two walls of a corner throw back, is left out.
 
     Attributes
     ----------
@@ -22,16 +30,30 @@ class RangeNoise:
         Distribution of e.
     level : float
         e is in [-level, level] if uniform, of standard deviation `level` if Gaussian.
+    grazing : float, optional
+        Largest angle of incidence, from the surface's normal [rad], from which an echo comes back,
+        in (0, pi/2]; None: from every one. A mirror sends back only what strikes it square on, for
+        which half the angle between two rays of a cone is right; rough walls take larger ones.
+    specular_rings : tuple of str
+        Names of the rings that `grazing` concerns.
     """
 
     kind: RangeNoiseKind = "uniform"
     level: float = 0.15
+    grazing: float | None = None
+    specular_rings: tuple[str, ...] = ("sonar",)
 
     def __post_init__(self) -> None:
         if self.kind not in ("uniform", "gaussian", "none"):
             raise ConfigError(f"range noise {self.kind!r}: must be uniform, gaussian or none")
         if not 0 <= self.level < 1:
             raise ConfigError(f"range noise level {self.level}: must be in [0, 1)")
+        if self.grazing is None:
+            return
+        if not 0 < self.grazing <= math.pi / 2:
+            raise ConfigError(f"range noise grazing {self.grazing}: must be in (0, pi/2] rad")
+        if not self.specular_rings:
+            raise ConfigError("range noise grazing: needs a ring in specular_rings")
 
 
 @dataclass(frozen=True)

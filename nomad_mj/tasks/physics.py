@@ -1,5 +1,6 @@
 """The simulated robot, asked in its own terms: readings, encoders, pose."""
 
+import math
 from typing import Any
 
 import mujoco
@@ -18,12 +19,13 @@ class NavigationPhysics(Physics):
     """dm_control's Physics with named questions, and a step without Python in its way."""
 
     robot: RobotDescription
+    grazing: float | None
 
     @classmethod
-    def from_scene(cls, scene: Scene) -> "NavigationPhysics":
-        """Return a new simulation of `scene`."""
+    def from_scene(cls, scene: Scene, grazing: float | None = None) -> "NavigationPhysics":
+        """Return a new simulation of `scene`; `grazing` as of `RangeNoise`."""
         physics = cls.from_model(wrapper.MjModel(scene.model))
-        physics.robot = scene.robot
+        physics.robot, physics.grazing = scene.robot, grazing
         physics._bind()
         return physics
 
@@ -35,15 +37,15 @@ class NavigationPhysics(Physics):
     def copy(self, share_model: bool = False) -> "NavigationPhysics":
         """Return an independent copy of this simulation in its present state."""
         other: NavigationPhysics = super().copy(share_model)
-        other.robot = self.robot
+        other.robot, other.grazing = self.robot, self.grazing
         other._bind()
         return other
 
     def __getstate__(self) -> Any:
-        return super().__getstate__(), self.robot
+        return super().__getstate__(), self.robot, self.grazing
 
     def __setstate__(self, state: Any) -> None:
-        data, self.robot = state
+        data, self.robot, self.grazing = state
         super().__setstate__(data)
 
     def free(self) -> None:
@@ -65,6 +67,8 @@ class NavigationPhysics(Physics):
         self._history: FloatArray = data.history
         rays = self.robot.rays
         self._ray_buffer = np.empty(len(rays.address))
+        # Behind the distance: direction of the ray (3), normal of the surface (3).
+        self._surfaces = rays.address[rays.specular, None] + np.arange(1, 7)
         joints = [model.joint(PREFIX + name) for name in JOINTS]
         self._qpos: FloatArray = data.qpos
         self._pose_address = np.array([int(joint.qposadr[0]) for joint in joints[:3]])
@@ -111,11 +115,18 @@ class NavigationPhysics(Physics):
             self.data.act[self._steer_servo] = pose.heading
 
     def cone_ranges(self) -> FloatArray:
-        """Return each cone's shortest ray, (C,) [m] from the perimeter; `_MISS` and over: none."""
+        """Return each cone's shortest ray, (C,) [m] from the perimeter; `_MISS` and over: none.
+
+        Rays of specular rings whose echo is lost count as a miss, see `RangeNoise.grazing`.
+        """
         rays = self.robot.rays
         # mode="clip": without a check of the indices, which would go through another buffer.
         values = self._sensordata.take(rays.address, out=self._ray_buffer, mode="clip")
         np.copyto(values, _MISS, where=values < 0)
+        if self.grazing is not None:
+            surfaces = self._sensordata.take(self._surfaces).reshape(-1, 2, 3)
+            incidence = np.abs(np.multiply.reduce(surfaces, axis=1).sum(axis=1))
+            values[rays.specular[incidence < math.cos(self.grazing)]] = _MISS
         cones = np.minimum.reduceat(values, rays.first)
         # The engine cuts what lies farther off to the maximum.
         np.copyto(cones, _MISS, where=cones >= rays.maximum)

@@ -91,6 +91,14 @@ def test_a_room_that_is_not_there(room: str, told: str) -> None:
     assert f"`{told}`" in (DOCS / "your-own-room.md").read_text()
 
 
+def test_a_ring_that_loses_echoes_and_is_not_there(tmp_path: Path) -> None:
+    (tmp_path / "own.xml").write_text(model("your-own-robot.md"))
+    noise = {"range_noise": nomad_mj.RangeNoise(grazing=0.5)}
+    told = error_of(robot=tmp_path / "own.xml", task_kwargs=noise)
+    assert told == "specular ring 'sonar': the robot has no such ring; rings it has: lidar"
+    assert f"`{told}`" in (DOCS / "your-own-robot.md").read_text()
+
+
 def test_a_checkpoint_for_other_sensors(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     robot, checkpoint = tmp_path / "my_robot.xml", tmp_path / "few.npz"
     robot.write_text(model("your-own-robot.md"))
