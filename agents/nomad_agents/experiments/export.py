@@ -1,0 +1,69 @@
+"""All runs and all episodes as CSV, for whoever wants to count again."""
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import asdict, fields
+from importlib.metadata import version
+from pathlib import Path
+
+from nomad_agents.checkpoint import write_atomically
+from nomad_agents.experiments.runs import PACKAGES, Result, Row, Run
+
+_RUN = tuple(field.name for field in fields(Run))
+
+
+def export(results: Sequence[Result], folder: Path) -> tuple[Path, Path]:
+    """Write ``runs.csv``, a row a run, and ``episodes.csv``, a row an episode.
+
+    The rows' order depends on what the runs are, not on who came first. Numbers read back to the
+    same bits; a cell is empty where a run has no such number.
+
+    Parameters
+    ----------
+    results : sequence of Result
+        Of any experiments.
+    folder : Path
+        Where to write them.
+
+    Returns
+    -------
+    tuple of Path
+        Both files.
+
+    Raises
+    ------
+    OutputError
+        They cannot be written.
+    """
+    ordered = sorted(results, key=lambda result: tuple(asdict(result.run).values()))
+    versions = {name: version(name) for name in PACKAGES}
+    runs = [
+        _joined({**asdict(result.run), **versions, **result.machine}, result.row)
+        for result in ordered
+    ]
+    episodes = [
+        _joined({**asdict(result.run), "episode": number}, episode)
+        for result in ordered
+        for number, episode in enumerate(result.episodes)
+    ]
+    paths = folder / "runs.csv", folder / "episodes.csv"
+    _write(runs, (*_RUN, *PACKAGES), paths[0])
+    _write(episodes, (*_RUN, "episode"), paths[1])
+    return paths
+
+
+def _joined(identity: Row, numbers: Row) -> Row:
+    """Return both in one row; a number called like a column before it gets a longer name."""
+    return identity | {f"row_{k}" if k in identity else k: v for k, v in numbers.items()}
+
+
+def _write(rows: Sequence[Row], first: Sequence[str], path: Path) -> None:
+    """Write rows with all columns that any of them has, in the order in which they appear."""
+    columns = dict.fromkeys([*first, *(name for row in rows for name in row)])
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(columns), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    content = text.getvalue().encode()
+    write_atomically(path, lambda file: file.write(content))
