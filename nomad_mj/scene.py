@@ -12,7 +12,15 @@ import shapely
 
 from nomad_mj.arenas import Arena, FloorPlan, check_arena
 from nomad_mj.assets import find_robot, find_room, models_dir
-from nomad_mj.errors import ModelError
+from nomad_mj.errors import ConfigError, ModelError
+from nomad_mj.movers import (
+    Moving,
+    MovingGoal,
+    MovingObstacles,
+    add_obstacles,
+    place_goal,
+    read_moving,
+)
 from nomad_mj.robots import (
     PREFIX,
     RobotDescription,
@@ -39,13 +47,16 @@ class Scene:
     arena : Arena
         Starts, goal and cameras of the room.
     plan : FloorPlan
-        Footprints of the room's obstacles.
+        Footprints of the room's obstacles, without those that move.
+    moving : Moving
+        The goal and the obstacles that move; false if none does.
     """
 
     model: mujoco.MjModel
     robot: RobotDescription
     arena: Arena
     plan: FloorPlan
+    moving: Moving
 
     @cached_property
     def free_space(self) -> shapely.Polygon:
@@ -110,12 +121,27 @@ def _compile(room: mujoco.MjSpec, robot: mujoco.MjSpec) -> mujoco.MjModel:
     return model
 
 
+def _check_configs(moving_goal: object, moving_obstacles: object) -> None:
+    for name, value, cls in (
+        ("moving_goal", moving_goal, MovingGoal),
+        ("moving_obstacles", moving_obstacles, MovingObstacles),
+    ):
+        if value is not None and not isinstance(value, cls):
+            raise ConfigError(
+                f"{name} {value!r}: must be a {cls.__name__}, such as nomad_mj.{cls.__name__}(), "
+                "or left out"
+            )
+
+
 def build_scene(
     room: str | Path,
     robot: str | Path,
     *,
     rays_per_cone: int | None = None,
     specular_rings: Sequence[str] = (),
+    goal: Sequence[float] | None = None,
+    moving_goal: MovingGoal | None = None,
+    moving_obstacles: MovingObstacles | None = None,
 ) -> Scene:
     """Compile a room and a robot into one model.
 
@@ -128,6 +154,12 @@ def build_scene(
     specular_rings : sequence of str
         Rings of range sensors whose rays report the surfaces they strike, as `RangeNoise.grazing`
         needs it; they take a little longer.
+    goal : (float, float), optional
+        Where the goal is [m], in place of the room's own.
+    moving_goal : MovingGoal, optional
+        How the goal moves; None for what the room's file says.
+    moving_obstacles : MovingObstacles, optional
+        Obstacles that move, beside those of the room's file.
 
     Raises
     ------
@@ -135,11 +167,15 @@ def build_scene(
         A file that is missing or malformed, an element that is missing, a start inside an
         obstacle, a goal that cannot be reached.
     """
+    _check_configs(moving_goal, moving_obstacles)
     room_path, robot_path = find_room(room), find_robot(robot)
     room_spec, robot_spec = _read("room", room_path), _read("robot", robot_path)
     if rays_per_cone is not None:
         set_rays_per_cone(robot_spec, rays_per_cone)
     report_surfaces(robot_spec, specular_rings)
+    if goal is not None or moving_goal is not None:
+        place_goal(room_spec, room_path.stem, goal, moving_goal is not None)
+    added = add_obstacles(room_spec, moving_obstacles) if moving_obstacles else ()
     try:
         model = _compile(room_spec, robot_spec)
     except (ValueError, RuntimeError) as error:
@@ -152,4 +188,6 @@ def build_scene(
     arena = Arena.from_model(model, room_path.stem)
     plan = FloorPlan.from_model(model, description.height, exclude_body_prefix=PREFIX)
     check_arena(plan, arena, description.layout.radius)
-    return Scene(model, description, arena, plan)
+    half = description.limits.translate / 2  # the paper's limit
+    moving = read_moving(model, arena.name, half, moving_goal, moving_obstacles, added)
+    return Scene(model, description, arena, plan, moving)

@@ -7,8 +7,8 @@ import pytest
 
 PUBLIC = {
     "nomad_mj": (
-        "MotorConfig MotorEnvironment NomadError OdometryNoise Outcome PathFinding "
-        "PathFindingConfig RangeNoise list_robots list_rooms load"
+        "MotorConfig MotorEnvironment MovingGoal MovingObstacles NomadError OdometryNoise Outcome "
+        "PathFinding PathFindingConfig RangeNoise list_robots list_rooms load"
     ),
     "nomad_mj.perception": (
         "GridSpec Percept SituationSpec attraction_force cell_centres certainty_grid code_grid "
@@ -19,6 +19,10 @@ PUBLIC = {
         "reinforcement"
     ),
     "nomad_mj.arenas": "Arena FloorPlan Geodesic check_arena",
+    "nomad_mj.movers": (
+        "Drift Movers Moving MovingBody MovingGoal MovingObstacles Walk add_obstacles place_goal "
+        "read_moving"
+    ),
     "nomad_mj.robots": (
         "ACTUATORS ENCODERS JOINTS PREFIX RayIndex RobotDescription describe_robot group_rays "
         "report_surfaces set_rays_per_cone unclip_surfaces"
@@ -65,7 +69,7 @@ def test_every_error_of_a_user_is_one_family() -> None:
 
 def test_subpackages_are_not_hidden_behind_functions_of_their_name() -> None:
     package = importlib.import_module("nomad_mj")
-    for name in ("arenas", "envs", "motion", "perception", "robots", "tasks"):
+    for name in ("arenas", "envs", "motion", "movers", "perception", "robots", "tasks"):
         importlib.import_module(f"nomad_mj.{name}")
         assert inspect.ismodule(getattr(package, name))
 

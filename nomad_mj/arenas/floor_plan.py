@@ -53,7 +53,7 @@ class FloorPlan:
     def from_model(
         cls, model: mujoco.MjModel, robot_height: float, exclude_body_prefix: str = ROBOT_PREFIX
     ) -> Self:
-        """Read the plan off a compiled room, all bodies at their initial pose.
+        """Read the plan off a compiled room, all bodies at their initial pose, without what moves.
 
         Parameters
         ----------

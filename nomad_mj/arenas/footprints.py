@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from nomad_mj.arenas.names import room_name
+from nomad_mj.arenas.names import is_moving, room_name
 from nomad_mj.errors import ModelError
 from nomad_mj.types import FloatArray
 
@@ -27,7 +27,8 @@ def footprints(
 ) -> Iterator[tuple[str, BaseGeometry]]:
     """Yield name and footprint of every geom a robot of this height can run into.
 
-    Bodies stand at their initial pose. The whole geom is projected, also what lies above the robot.
+    Bodies stand at their initial pose; those that the task moves are left out. The whole geom is
+    projected, also what lies above the robot.
 
     Parameters
     ----------
@@ -61,11 +62,23 @@ def footprints(
             yield name, _project(points[:, :2], spread[:2])
 
 
+def reach(model: mujoco.MjModel, data: mujoco.MjData, geom: int, centre: FloatArray) -> float:
+    """Return the radius of the upright cylinder around a place (2 or 3,) that holds a geom [m]."""
+    name = room_name(model.geom(geom).name) or f"geom {geom}"
+    points, spread = _points_and_spread(model, data, geom, name)
+    outline = shapely.get_coordinates(_project(points[:, :2] - centre[:2], spread[:2]))
+    if spread.any() and not np.ptp(points[:, :2], axis=0).any():  # exact for what is round
+        thick = float(np.linalg.norm(spread[:2], ord=2))
+        return float(np.hypot(*(points[0, :2] - centre[:2]))) + thick
+    return float(np.hypot(*outline.T).max())
+
+
 def _excluded_bodies(model: mujoco.MjModel, prefix: str) -> list[bool]:
     excluded: list[bool] = []
     for body in range(model.nbody):  # parents come before their children
         inherited = body > 0 and excluded[int(model.body_parentid[body])]
-        excluded.append(inherited or model.body(body).name.startswith(prefix))
+        named = model.body(body).name.startswith(prefix)
+        excluded.append(inherited or named or is_moving(model, body))
     return excluded
 
 

@@ -1,6 +1,6 @@
 """Load an environment by name, as dm_control's users expect."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, Literal, overload
@@ -15,6 +15,7 @@ from nomad_mj.tasks import MotorConfig, MotorEnvironment, MotorTask, RangeNoise
 TASKS = ("motor", "path_finding")
 DEFAULT_ROOM = "paper_room"
 DEFAULT_ROBOT = "nomad200"
+SCENE_OPTIONS = ("rays_per_cone", "moving_goal", "moving_obstacles")
 
 
 def _config(cls: type[Any], options: dict[str, Any]) -> Any:
@@ -41,6 +42,8 @@ def load(
     robot: str | Path = DEFAULT_ROBOT,
     task_kwargs: Mapping[str, Any] | None = None,
     environment_kwargs: Mapping[str, Any] | None = None,
+    *,
+    goal: Sequence[float] | None = None,
 ) -> PathFinding: ...
 
 
@@ -51,6 +54,8 @@ def load(
     robot: str | Path = DEFAULT_ROBOT,
     task_kwargs: Mapping[str, Any] | None = None,
     environment_kwargs: Mapping[str, Any] | None = None,
+    *,
+    goal: Sequence[float] | None = None,
 ) -> MotorEnvironment: ...
 
 
@@ -60,6 +65,8 @@ def load(
     robot: str | Path = DEFAULT_ROBOT,
     task_kwargs: Mapping[str, Any] | None = None,
     environment_kwargs: Mapping[str, Any] | None = None,
+    *,
+    goal: Sequence[float] | None = None,
 ) -> PathFinding | MotorEnvironment:
     """Return an environment.
 
@@ -70,10 +77,13 @@ def load(
     room, robot : str or Path
         The name of one that comes with the package, or an MJCF file.
     task_kwargs : mapping, optional
-        ``random`` (seed), ``rays_per_cone`` and the fields of `MotorConfig`; for path finding
-        those of `PathFindingConfig` too.
+        ``random`` (seed), ``rays_per_cone``, ``moving_goal`` (a `MovingGoal`),
+        ``moving_obstacles`` (a `MovingObstacles`) and the fields of `MotorConfig`; for path
+        finding those of `PathFindingConfig` too.
     environment_kwargs : mapping, optional
         ``time_limit`` [s]; for the motor task ``flat_observation`` too.
+    goal : (float, float), optional
+        Where the goal is [m], in place of the room's own.
 
     Raises
     ------
@@ -83,7 +93,7 @@ def load(
     if task_name not in TASKS:
         raise UnknownNameError("task", task_name, TASKS)
     options, environment = dict(task_kwargs or {}), dict(environment_kwargs or {})
-    known = ["random", "rays_per_cone", *(f.name for f in fields(MotorConfig))]
+    known = ["random", *SCENE_OPTIONS, *(f.name for f in fields(MotorConfig))]
     accepts = ["time_limit"]
     if task_name == "motor":
         accepts.append("flat_observation")
@@ -93,11 +103,13 @@ def load(
     _refuse("task option", options, known)
     _refuse("environment option", environment, accepts)
     noise: RangeNoise = options.get("range_noise", RangeNoise())
+    of_scene = {name: options.pop(name) for name in SCENE_OPTIONS if name in options}
     scene = build_scene(
         room,
         robot,
-        rays_per_cone=options.pop("rays_per_cone", None),
+        goal=goal,
         specular_rings=noise.specular_rings if noise.grazing is not None else (),
+        **of_scene,
     )
     if task_name == "motor":
         return MotorEnvironment(make_motor(scene, options), **environment)

@@ -10,8 +10,9 @@ from dm_control.rl import control
 from dm_env import specs
 
 from nomad_mj.errors import ConfigError
+from nomad_mj.movers import Movers
 from nomad_mj.robots import ACTUATORS, PREFIX
-from nomad_mj.scene import Scene
+from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.tasks.noise import OdometryNoise, RangeNoise, RangeNoiseStream
 from nomad_mj.tasks.odometry import Odometry
 from nomad_mj.tasks.physics import NavigationPhysics
@@ -69,6 +70,8 @@ class MotorTask(control.Task):
         Where the present episode started.
     ranges : array (layout.count,)
         The range readings of this control step, all rings concatenated [m].
+    movers : Movers or None
+        Where the goal and the obstacles that move are now; None if nothing moves.
     random : numpy.random.Generator
         For dm_control's wrappers, which look for it here; the task draws nothing from it.
     """
@@ -95,7 +98,11 @@ class MotorTask(control.Task):
         model = scene.model
         self._motors = np.array([model.actuator(PREFIX + name).id for name in ACTUATORS])
         self._limits: FloatArray = model.actuator_ctrlrange[self._motors]
-        self._goal: tuple[float, float] = tuple(scene.arena.goal.tolist())
+        self._goal: FloatArray = scene.arena.goal
+        self._goal_xy: tuple[float, float] = tuple(self._goal.tolist())
+        radius = scene.robot.layout.radius
+        moving = scene.moving
+        self.movers = Movers(moving, scene.plan, self._goal, radius) if moving else None
         self._begin(None)
 
     def seed(self, random: int | np.random.SeedSequence | None) -> None:
@@ -115,10 +122,13 @@ class MotorTask(control.Task):
     def _begin(self, physics: NavigationPhysics | None) -> None:
         """Set up the streams and sensors of an episode; place the robot if there is a physics."""
         key = (*self._seed.spawn_key, self._episode)
-        streams = np.random.SeedSequence(self._seed.entropy, spawn_key=key).spawn(4)
-        choice, ranges, odometry, free = (np.random.default_rng(stream) for stream in streams)
+        streams = np.random.SeedSequence(self._seed.entropy, spawn_key=key).spawn(6)
+        choice, ranges, odometry, free, *moving = map(np.random.default_rng, streams)
         self.random = free
         start = resolve_start(self.scene, self._start, choice)
+        if self.movers is not None:
+            self.movers.start(start[:2], *moving)
+            self._show(self.movers, physics)
         if physics is not None:
             physics.place(start)
             self._episode += 1
@@ -138,6 +148,16 @@ class MotorTask(control.Task):
         """Command the motors: translate [m/s], steer [rad/s], turret [rad/s]."""
         physics.data.ctrl[self._motors] = action
         self._observation = None
+        if self.movers is not None:
+            self.movers.advance(CONTROL_TIMESTEP, physics.pose()[:2])
+            self._show(self.movers, physics)
+
+    def _show(self, movers: Movers, physics: NavigationPhysics | None) -> None:
+        """Let the goal be where it has moved, and the bodies of all that moves."""
+        self._goal = movers.goal
+        self._goal_xy = tuple(self._goal.tolist())
+        if physics is not None:
+            physics.move_bodies(movers.rows, movers.body_places())
 
     def action_spec(self, physics: NavigationPhysics) -> specs.BoundedArray:
         """Return the motors' limits, (3,)."""
@@ -180,12 +200,17 @@ class MotorTask(control.Task):
         result["bumpers"] = physics.bumpers()
         result["encoders"] = encoders
         result["odometry"] = odometry
-        result["goal"] = self.scene.arena.goal - odometry[:2]
+        result["goal"] = self._goal - odometry[:2]
         return result
+
+    @property
+    def goal(self) -> FloatArray:
+        """Where the goal is now, (2,) [m]: the one that is told, ends the episode and is drawn."""
+        return self._goal.copy()
 
     def goal_distance(self, physics: NavigationPhysics) -> float:
         """Return the true distance from the robot's centre to the goal [m]."""
-        pose, goal = physics.pose(), self._goal
+        pose, goal = physics.pose(), self._goal_xy
         return math.hypot(goal[0] - pose.x, goal[1] - pose.y)
 
     def get_reward(self, physics: NavigationPhysics) -> float:

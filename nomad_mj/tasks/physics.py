@@ -56,6 +56,7 @@ class NavigationPhysics(Physics):
             "_sensordata",
             "_history",
             "_qpos",
+            "_mocap_pos",
         ):  # they would keep the memory alive
             vars(self).pop(name, None)
 
@@ -65,6 +66,7 @@ class NavigationPhysics(Physics):
         self._raw = (model, data)
         self._sensordata: FloatArray = data.sensordata
         self._history: FloatArray = data.history
+        self._mocap_pos: FloatArray = data.mocap_pos
         rays = self.robot.rays
         self._ray_buffer = np.empty(len(rays.address))
         # Behind the distance: direction of the ray (3), normal of the surface (3).
@@ -113,6 +115,10 @@ class NavigationPhysics(Physics):
         self.data.qpos[self._wheels] = pose.heading  # else their belts would wrench them there
         if self._steer_servo >= 0:  # else the servo would turn the wheels back to zero
             self.data.act[self._steer_servo] = pose.heading
+
+    def move_bodies(self, rows: IntArray, places: FloatArray) -> None:
+        """Put mocap bodies, given their rows (n,), at places (n, 2) [m]; the next step sees it."""
+        self._mocap_pos[rows, :2] = places
 
     def cone_ranges(self) -> FloatArray:
         """Return each cone's shortest ray, (C,) [m] from the perimeter; `_MISS` and over: none.

@@ -1,0 +1,20 @@
+"""Goals and obstacles that move: how they do, which bodies they are, and the rules they keep."""
+
+from nomad_mj.movers.bodies import Moving, MovingBody, read_moving
+from nomad_mj.movers.drift import Drift, MovingGoal, MovingObstacles
+from nomad_mj.movers.movers import Movers
+from nomad_mj.movers.spec import add_obstacles, place_goal
+from nomad_mj.movers.walk import Walk
+
+__all__ = [
+    "Drift",
+    "Movers",
+    "Moving",
+    "MovingBody",
+    "MovingGoal",
+    "MovingObstacles",
+    "Walk",
+    "add_obstacles",
+    "place_goal",
+    "read_moving",
+]
