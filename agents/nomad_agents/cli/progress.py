@@ -4,7 +4,14 @@ from collections.abc import Iterable
 from types import TracebackType
 
 from rich.console import Console, RenderableType
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from rich.text import Text
 from typing_extensions import Self
 
@@ -78,4 +85,18 @@ def trial_progress(screen: Console) -> Progress:
         MofNCompleteColumn(),
         TimeElapsedColumn(),
         console=screen,
+    )
+
+
+def run_progress(screen: Console) -> Progress:
+    """Return a bar over runs, with an estimate of what is left."""
+    return Progress(
+        TextColumn("{task.description:<9}"),
+        BarColumn(bar_width=30),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        console=screen,
+        speed_estimate_period=300,  # runs differ in length
     )

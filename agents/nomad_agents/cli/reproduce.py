@@ -2,114 +2,131 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import tyro
-from rich.table import Table
+from rich.console import Console
 
-from nomad_agents.cli.common import (
-    console,
-    interruptible,
-    output_file,
-    path_finding,
-    print_json,
-)
-from nomad_agents.cli.demo import LEARNING_ROWS, PAPER, UNSEEN_ROWS
-from nomad_agents.cli.progress import trial_progress
-from nomad_agents.experiments.learning import (
-    BASELINE_SEEDS,
-    BASELINES,
-    UNSEEN_STARTS,
-    learn_and_evaluate,
-    quartiles,
-)
-from nomad_agents.experiments.runs import Row, Run, do_runs
-from nomad_agents.reactive_planner import ReactivePlanner
+from nomad_agents.cli.common import console, interruptible, output_file, path_finding, print_json
+from nomad_agents.cli.progress import run_progress
+from nomad_agents.experiments.experiment import Experiment, Study
+from nomad_agents.experiments.export import export
+from nomad_agents.experiments.paper import EXPERIMENTS, EXTRA
+from nomad_agents.experiments.presentation import Presentation, present
+from nomad_agents.experiments.reproduction import Results, count_runs, on_file, reproduce
+from nomad_agents.experiments.runs import Result
 from nomad_agents.registry import find_config
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
-from nomad_mj.errors import ConfigError
+from nomad_mj.errors import ConfigError, UnknownNameError
+
+ALL = "all"
 
 
 @dataclass(frozen=True)
 class Reproduce:
-    """Repeat an experiment of the paper over many seeds, beside the baselines.
+    """Repeat the paper's experiments over many seeds, beside the baselines, into one report.
 
-    fig6: learn the room until every start is solved, then 200 unseen starts.
+    Experiments: fig6 fig7 fig8 fig9 fig10 fig11 fig12 fig13 fig14 noise timing, or all of these;
+    ablations (every reading of the text against its alternatives) by its own name only.
     """
 
-    experiment: Annotated[Literal["fig6"], tyro.conf.Positional] = "fig6"
-    """Which."""
+    experiments: Annotated[tuple[str, ...], tyro.conf.Positional] = (ALL,)
+    """Which, one or several."""
     seeds: int = 20
     """Runs, with the seeds 0, 1, ...; at most 5 of each baseline, which learns nothing."""
     config: str = "faithful"
     """Parameters: faithful (the paper's) or tuned (better ones found since)."""
     room: str = DEFAULT_ROOM
-    """Name of a room, or an MJCF file."""
+    """Name of a room, or an MJCF file; fig13 and parts of fig9 and fig10 have their own."""
     robot: str = DEFAULT_ROBOT
     """Name of a robot, or an MJCF file."""
     jobs: int = 2
     """Processes."""
-    out: str = "renders/reproduce"
-    """Folder for one file a run; runs that are there are not done again."""
+    out: str = "renders"
+    """Folder for report.html and, under reproduce/CONFIG, one file a run, tables and figures."""
+    videos: bool = True
+    """Record a video of each experiment."""
+    only_read: bool = False
+    """Run nothing: show what is on file."""
     json: bool = False
     """Print one line of JSON last on standard output."""
 
     def run(self) -> int:
-        """Run what is missing; return the exit code."""
+        """Run what is missing, then write tables, figures, videos and the report."""
         if self.seeds < 1 or self.jobs < 1:
             raise ConfigError(f"seeds {self.seeds}, jobs {self.jobs}: must be 1 or more")
+        experiments = choose(self.experiments)
         find_config(self.config)
         with path_finding(self.room, self.robot):
             pass  # whatever is wrong with them is said now, and once
+        study = Study(self.config, self.room, self.robot, self.seeds)
         screen = console(json_wanted=self.json)
-        folder = output_file(f"{self.out}/rows", "probe", ".csv").parent
-        rows: dict[str, list[Row]] = {}
-        counts = dict.fromkeys(BASELINES, min(self.seeds, BASELINE_SEEDS))
-        counts = {ReactivePlanner.name: self.seeds, **counts}
-        with interruptible(), trial_progress(screen) as progress:
-            task = progress.add_task(self.experiment, total=sum(counts.values()))
-            for agent, count in counts.items():
-                runs = [
-                    Run(self.experiment, agent, self.config, self.room, self.robot, seed)
-                    for seed in range(count)
-                ]
-                rows[agent] = do_runs(
-                    runs, learn_and_evaluate, folder, self.jobs, lambda: progress.advance(task)
-                )
-        screen.print(self._table(rows))
+        folder = output_file(f"{self.out}/reproduce/{self.config}/runs", "probe", ".csv").parent
+        with interruptible():
+            results = self._results(experiments, study, folder, screen)
+            shown = [each for each in experiments if results[each.name]]
+            if not shown:
+                raise ConfigError(f"no run of {', '.join(self.experiments)} is on file in {folder}")
+            export([result for each in results.values() for result in each], folder.parent)
+            report = Path(self.out) / "report.html"
+            presentation = present(shown, results, study, folder, report, self.videos, screen)
+        self._print(presentation, screen)
         if self.json:
-            print_json({agent: _spread(rows[agent]) for agent in rows})
+            print_json({each.name: _numbers(results[each.name]) for each in shown})
         return 0
 
-    def _table(self, rows: dict[str, list[Row]]) -> Table:
-        """Return the table paper | ours | straight to the goal | planner at every decision."""
-        room = Path(self.room).stem
-        title = f"{room}, {self.config}, {self.seeds} seeds: median [quartiles]"
-        table = Table("", "paper", "ours", "straight", "planner", title=title)
-        learner = rows[ReactivePlanner.name]
-        solved = sum(row["learn_solved"] == row["learn_starts"] for row in learner)
-        table.add_row("seeds that solve every start", "1 of 1", f"{solved} of {len(learner)}")
-        for key, label in LEARNING_ROWS.items():
-            table.add_row(label, PAPER[key], _cell(learner, f"learn_{key}"))
-        table.add_section()
-        table.add_row(f"{UNSEEN_STARTS} unseen starts a seed")
-        for key, label in UNSEEN_ROWS.items():
-            table.add_row(f"  {label}", "", *(_cell(each, key) for each in rows.values()))
-        return table
+    def _results(
+        self, experiments: list[Experiment], study: Study, folder: Path, screen: Console
+    ) -> Results:
+        """Return the results, with a progress bar over all runs."""
+        if self.only_read:
+            return on_file(experiments, study, folder)
+        done, total = 0, count_runs(experiments, study)
+        with run_progress(screen) as progress:
+            task = progress.add_task("runs", total=total)
+
+            def after_run(result: Result) -> None:
+                nonlocal done
+                done += 1
+                progress.update(task, completed=done, description=result.run.experiment)
+
+            try:
+                return reproduce(experiments, study, folder, self.jobs, after_run)
+            except KeyboardInterrupt:
+                screen.print(
+                    f"{done} of {total} runs are on file in {folder}; the same command goes on "
+                    "from there, with --only-read it shows what there is",
+                    soft_wrap=True,
+                )
+                raise
+
+    def _print(self, presentation: Presentation, screen: Console) -> None:
+        for table in presentation.tables:
+            screen.print(table)
+        for name, verdict in presentation.verdicts.items():
+            screen.print(f"{name}: {verdict.holds}: {verdict.reason}", soft_wrap=True)
+        for line in presentation.remarks:
+            screen.print(line, soft_wrap=True)
+        screen.print(f"Report: {presentation.report}", soft_wrap=True)
 
 
-def _cell(rows: list[Row], key: str) -> str:
-    """Return median and quartiles as people read them."""
-    first, middle, third = quartiles(rows, key)
-    digits = 0 if key.startswith("learn_") else 3
-    return f"{middle:.{digits}f} [{first:.{digits}f}-{third:.{digits}f}]".replace("[", "\\[")
+def choose(names: tuple[str, ...]) -> list[Experiment]:
+    """Return the experiments of some names, in the catalogue's order.
+
+    Raises
+    ------
+    UnknownNameError
+        A name that no experiment has.
+    """
+    for name in names:
+        if name not in (*EXPERIMENTS, ALL):
+            raise UnknownNameError("experiment", name, [*EXPERIMENTS, ALL])
+    wanted = set(names)
+    if ALL in wanted or not wanted:
+        wanted |= set(EXPERIMENTS) - set(EXTRA)
+    return [each for name, each in EXPERIMENTS.items() if name in wanted]
 
 
-def _spread(rows: list[Row]) -> dict[str, Any]:
-    """Return first quartile, median and third quartile of every column."""
-    names = ("q1", "median", "q3")
-    return {
-        key: dict(zip(names, quartiles(rows, key), strict=True))
-        for key in rows[0]
-        if all(row[key] is not None for row in rows)
-    }
+def _numbers(results: list[Result]) -> dict[str, Any]:
+    """Return the medians of an experiment's numbers, by agent and case."""
+    raise NotImplementedError

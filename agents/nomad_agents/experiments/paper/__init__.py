@@ -9,6 +9,7 @@ from nomad_agents.experiments.paper.actions import Actions
 from nomad_agents.experiments.paper.concave import Concave
 from nomad_agents.experiments.paper.intensity import NoIntensity
 from nomad_agents.experiments.paper.learning import Learning
+from nomad_agents.experiments.paper.moving import GoalMoves, ObstaclesMove
 from nomad_agents.experiments.paper.noise import Noise
 from nomad_agents.experiments.paper.odometry import WrongOdometry
 from nomad_agents.experiments.paper.places import Adapting, OtherPlaces
@@ -22,6 +23,8 @@ EXPERIMENTS: dict[str, Experiment] = {
         WrongOdometry(),
         OtherPlaces(),
         Adapting(),
+        GoalMoves(),
+        ObstaclesMove(),
         Concave(),
         NoIntensity(),
         Noise(),

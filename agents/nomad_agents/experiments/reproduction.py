@@ -1,0 +1,68 @@
+"""Do a study: the runs of some experiments, trained agents first, in one pool of processes."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from nomad_agents.experiments.experiment import Experiment, Study
+from nomad_agents.experiments.learnt import TRAINING, train_room, training_run
+from nomad_agents.experiments.paper import EXPERIMENTS
+from nomad_agents.experiments.runs import Result, Run, do_runs, stored_result
+
+Results = dict[str, list[Result]]
+
+
+def work(run: Run, folder: Path) -> Result:
+    """Do one run of any experiment; called in a process of its own."""
+    if run.experiment == TRAINING:
+        return train_room(run, folder)
+    return EXPERIMENTS[run.experiment].work(run, folder)
+
+
+def trainings(experiments: Sequence[Experiment], study: Study) -> list[Run]:
+    """Return the runs in which the agents learn that the experiments begin with."""
+    runs = [run for each in experiments if each.needs_trained for run in each.runs(study)]
+    return list(dict.fromkeys(training_run(run) for run in runs))
+
+
+def count_runs(experiments: Sequence[Experiment], study: Study) -> int:
+    """Return how many runs a study is made of."""
+    return len(trainings(experiments, study)) + sum(len(e.runs(study)) for e in experiments)
+
+
+def reproduce(
+    experiments: Sequence[Experiment],
+    study: Study,
+    folder: Path,
+    jobs: int,
+    after_run: Callable[[Result], None],
+) -> Results:
+    """Return the results of experiments by name, doing the runs that are not on file.
+
+    Parameters
+    ----------
+    experiments, study
+        What to do.
+    folder : Path
+        Where results are kept, one file a run.
+    jobs : int
+        Number of processes.
+    after_run : callable
+        Called once for each run, when its result is there.
+    """
+    do_runs(trainings(experiments, study), work, folder, jobs, after_run)
+    runs = [run for each in experiments for run in each.runs(study)]
+    return _by_name(experiments, do_runs(runs, work, folder, jobs, after_run))
+
+
+def on_file(experiments: Sequence[Experiment], study: Study, folder: Path) -> Results:
+    """Return the results that are on file, and do nothing."""
+    runs = [run for each in experiments for run in each.runs(study)]
+    held = [stored_result(run, folder) for run in runs]
+    return _by_name(experiments, [result for result in held if result is not None])
+
+
+def _by_name(experiments: Sequence[Experiment], results: Sequence[Result]) -> Results:
+    return {
+        each.name: [result for result in results if result.run.experiment == each.name]
+        for each in experiments
+    }
