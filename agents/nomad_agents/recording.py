@@ -13,6 +13,7 @@ from nomad_mj.motion import displacement
 from nomad_mj.tasks import Start
 from nomad_mj.video import BLUE, GREY, ORANGE, Caption, EpisodeRecorder
 
+PAUSES = (1.2, 1.6)  # [s of the video] before and after an episode
 _COLOURS = {"reacted": BLUE, "planned": ORANGE, "none": GREY}
 
 
@@ -36,7 +37,11 @@ def _caption(number: int, decision: Decision, z: float | None) -> Caption:
 
 
 def _narrator(
-    recorder: EpisodeRecorder, env: PathFinding, agent: Agent, title: str, subtitle: str
+    recorder: EpisodeRecorder,
+    env: PathFinding,
+    agent: Agent,
+    lines: tuple[str, str],
+    pause: float,
 ) -> Watcher:
     """Return a watcher that tells the recorder what the agent is about in one episode."""
     number, z = 0, None
@@ -49,7 +54,7 @@ def _narrator(
             recorder.caption(_caption(number, decision, z))
             return
         if number == 0:
-            recorder.start_episode(title, subtitle)
+            recorder.start_episode(*lines, pause)
         number += 1
         recorder.annotate(
             percept.grid,
@@ -74,6 +79,9 @@ def record(
     size: tuple[int, int] | None = None,
     max_decisions: int = 100,
     explore: np.random.Generator | None = None,
+    title: str = "",
+    subtitle: str = "",
+    pauses: tuple[float, float] = PAUSES,
 ) -> Recording:
     """Record one episode from each start and return what they took.
 
@@ -89,6 +97,10 @@ def record(
         Of the environment.
     view, speed, fps, size, max_decisions, explore
         As of `EpisodeRecorder` and `run_episode`.
+    title, subtitle : str
+        Shown before each episode, the number of the start added; agent and room if empty.
+    pauses : (float, float)
+        For how long to show that, and the outcome of each episode [s of the video].
 
     Raises
     ------
@@ -96,10 +108,11 @@ def record(
         An option, a start or a path that is wrong; no OpenGL.
     """
     episodes, count = list[Episode](), len(starts)
-    title = f"{agent.name} in {env.scene.arena.name}".replace("_", " ")
+    title = title or f"{agent.name} in {env.scene.arena.name}".replace("_", " ")
     with EpisodeRecorder(env, path, view=view, size=size, fps=fps, speed=speed) as recorder:
         for i, stream in enumerate(np.random.SeedSequence(seed).spawn(count)):
-            subtitle = f"start {i + 1} of {count}" if count > 1 else ""
+            numbered = f"start {i + 1} of {count}" if count > 1 else ""
+            lines = title, ", ".join(filter(None, (subtitle, numbered)))
             episode = run_episode(
                 env,
                 agent,
@@ -107,13 +120,13 @@ def record(
                 start=starts[i],
                 explore=explore,
                 max_decisions=max_decisions,
-                watch=_narrator(recorder, env, agent, title, subtitle),
+                watch=_narrator(recorder, env, agent, lines, pauses[0]),
             )
             episodes.append(episode)
             outcome = "goal reached" if episode.reached else "goal not reached"
             told = (
                 f"{episode.decisions} decisions, {episode.driven:.1f} m, {episode.duration:.0f} s"
             )
-            recorder.hold(1.6, outcome, told)
+            recorder.hold(pauses[1], outcome, told)
         frames = recorder.frames
     return Recording(Path(path), frames, frames / fps, tuple(episodes))

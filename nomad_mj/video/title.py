@@ -15,6 +15,8 @@ def title_card(title: str, subtitle: str, box: Box, unit: float) -> Card:
     if subtitle:
         lines.append((subtitle, max(round(_SUBTITLE * unit), 6), MUTED))
     pad = round(0.95 * lines[0][1])
+    space = box.width - 2 * pad
+    lines = [(text, _fitting(text, letters, space), colour) for text, letters, colour in lines]
     widest = max(text_width(text, letters) for text, letters, _ in lines)
     width = min(widest + 2 * pad + round(8 * unit), box.width)
     height = round(sum(1.5 * letters for _, letters, _ in lines)) + pad
@@ -27,3 +29,8 @@ def title_card(title: str, subtitle: str, box: Box, unit: float) -> Card:
         y += 1.5 * letters
     x = box.x + (box.width - width) // 2
     return make_card(card, x, box.y + max(round(0.4 * box.height - height / 2), 0))
+
+
+def _fitting(text: str, letters: int, space: int) -> int:
+    """Return the size of the letters [px], smaller if the text is wider than the `space`."""
+    return max(min(letters, int(letters * space / max(text_width(text, letters), 1))), 6)

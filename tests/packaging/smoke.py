@@ -10,6 +10,8 @@ import sysconfig
 from importlib.metadata import files
 from pathlib import Path
 
+from nomad_agents.experiments.report import write_report
+
 import nomad_mj
 from nomad_mj._gl import gl_report
 
@@ -39,6 +41,12 @@ def check_environment() -> None:
     spec = env.action_spec()
     check(env.step(spec.generate_value()).observation is not None, "no observation")
     env.close()
+
+
+def check_report(page: Path) -> None:
+    """Write a report: its templates are files that are no Python."""
+    write_report(page, [])
+    check("</html>" in page.read_text(encoding="utf-8"), f"{page} is no whole page")
 
 
 def nomad(*arguments: str) -> str:
@@ -71,5 +79,6 @@ def check_commands(folder: Path) -> None:
 if __name__ == "__main__":
     check_files()
     check_environment()
+    check_report(Path.cwd() / "report.html")
     check_commands(Path.cwd())
     print(f"the wheel works: nomad-mj {nomad_mj.__version__}, {gl_report().message}")

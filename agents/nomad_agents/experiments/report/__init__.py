@@ -1,0 +1,13 @@
+"""The report: one page that shows every experiment, and needs nothing but itself."""
+
+from nomad_agents.experiments.report.page import write_report
+from nomad_agents.experiments.report.provenance import provenance
+from nomad_agents.experiments.report.section import (
+    Captioned,
+    NoVideo,
+    Section,
+    Tabular,
+    Video,
+)
+
+__all__ = ["Captioned", "NoVideo", "Section", "Tabular", "Video", "provenance", "write_report"]

@@ -1,0 +1,39 @@
+"""Where the numbers of a report come from: seeds, versions, machines."""
+
+from collections.abc import Sequence
+from importlib.metadata import version
+
+from nomad_agents.experiments.experiment import LEARNER, Study
+from nomad_agents.experiments.runs import PACKAGES, Result
+
+_HOUR = 3600.0  # [s]
+
+
+def provenance(study: Study, results: Sequence[Result]) -> list[tuple[str, str]]:
+    """Return what a report says at its end: (term, description), the same for the same results.
+
+    Parameters
+    ----------
+    study : Study
+        What was asked for.
+    results : sequence of Result
+        Of all experiments.
+    """
+    learners = sum(result.run.agent == LEARNER for result in results)
+    seconds = sum(float(result.machine.get("wall_s", 0.0)) for result in results)
+    counts = f"{learners} of the learner, {len(results) - learners} of the baselines"
+    seeds = "0" if study.seeds == 1 else f"0 to {study.seeds - 1}"
+    return [
+        ("Parameters", study.config),
+        ("Room, robot", f"{study.room}, {study.robot}"),
+        ("Seeds", seeds),
+        ("Runs", f"{counts}; {seconds / _HOUR:.1f} hours of computing"),
+        ("Versions", ", ".join(f"{name} {version(name)}" for name in PACKAGES)),
+        ("Python", _all_of(results, "python")),
+        ("Machine", _all_of(results, "system")),
+    ]
+
+
+def _all_of(results: Sequence[Result], key: str) -> str:
+    """Return every value that the machines of the results have under a name."""
+    return "; ".join(sorted({str(r.machine[key]) for r in results if key in r.machine})) or "-"
