@@ -40,3 +40,7 @@ class OutputError(NomadError):
 
 class RenderError(NomadError):
     """No OpenGL implementation works here."""
+
+
+class WorkerError(NomadError):
+    """A process that does part of the work has gone."""

@@ -72,7 +72,7 @@ class Showcase(NamedTuple):
     ----------
     env, agent
         As they are in the case shown.
-    starts : list
+    starts : sequence
         As of `PathFinding.reset`, an episode from each.
     learning : bool
         Whether the agent goes on learning in it.
@@ -82,7 +82,7 @@ class Showcase(NamedTuple):
 
     env: PathFinding
     agent: Agent
-    starts: list[Start]
+    starts: Sequence[Start]
     learning: bool = False
     subtitle: str = ""
 
@@ -138,9 +138,7 @@ class Experiment(ABC):
         ]
 
 
-def column(
-    results: Sequence[Result], key: str, case: str = "", agent: str = LEARNER
-) -> FloatArray:
+def column(results: Sequence[Result], key: str, case: str = "", agent: str = LEARNER) -> FloatArray:
     """Return one number of each run of an agent, (runs,), NaN where it has none.
 
     Parameters
@@ -153,8 +151,6 @@ def column(
     values = [
         result.row[key]
         for result in results
-        if result.run.agent == agent
-        and (not case or result.run.case == case)
-        and key in result.row
+        if result.run.agent == agent and (not case or result.run.case == case) and key in result.row
     ]
     return np.array([np.nan if value is None else float(value) for value in values])

@@ -24,11 +24,15 @@ def unseen_starts(env: PathFinding, count: int = UNSEEN_STARTS) -> FloatArray:
 
 
 def assess(
-    env: PathFinding, agent: Agent, seed: int, count: int = UNSEEN_STARTS
+    env: PathFinding,
+    agent: Agent,
+    seed: int,
+    count: int = UNSEEN_STARTS,
+    decisions: int = DECISIONS,
 ) -> tuple[Row, list[Trial]]:
     """Run a greedy agent from unseen starts; return its metrics (see `summarise`) and episodes."""
     starts = unseen_starts(env, count)
-    trials = evaluate(env, agent, starts, UNSEEN_SEED + seed, DECISIONS)
+    trials = evaluate(env, agent, starts, UNSEEN_SEED + seed, decisions)
     return dict(summarise(env, trials)), trials
 
 

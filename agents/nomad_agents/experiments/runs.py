@@ -11,6 +11,7 @@ import signal
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from pathlib import Path
@@ -20,7 +21,7 @@ import cattrs
 
 from nomad_agents.checkpoint import write_atomically
 from nomad_agents.registry import find_config
-from nomad_mj.errors import OutputError
+from nomad_mj.errors import OutputError, WorkerError
 
 Row = dict[str, Any]
 PACKAGES = ("nomad-mj", "mujoco", "numpy")
@@ -157,6 +158,13 @@ def do_runs(
         Number of processes.
     after_run : callable
         Called once for each run, when its result is there.
+
+    Raises
+    ------
+    WorkerError
+        A process was killed.
+    NomadError
+        What a run raised; the results of those before it are kept.
     """
     results = {run: stored_result(run, folder) for run in runs}
     for result in results.values():
@@ -175,9 +183,14 @@ def do_runs(
                 result = future.result()
                 results[result.run] = result
                 after_run(result)
+        except BrokenProcessPool:
+            raise WorkerError(
+                "a process was killed, perhaps for want of memory; what is done is kept: take "
+                "fewer --jobs and run again"
+            ) from None
         except BaseException:
-            for process in list(pool._processes.values()):  # pyright: ignore[reportPrivateUsage]
-                process.terminate()
+            for process in multiprocessing.active_children():
+                process.terminate()  # nobody who interrupts wants to wait for the present runs
             raise
         finally:
             pool.shutdown(cancel_futures=True)

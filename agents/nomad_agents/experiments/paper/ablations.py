@@ -1,10 +1,10 @@
 """Every reading of the text that mattered, against its alternatives, one at a time."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -28,46 +28,48 @@ from nomad_mj.motion import MotionConfig
 
 _MOST_PASSES = 12
 _UNSEEN = 100
-_Change = Callable[[ReactivePlannerConfig], ReactivePlannerConfig]
-
-
-def _same(config: ReactivePlannerConfig) -> ReactivePlannerConfig:
-    return config
+_NOTHING: Mapping[str, Any] = {}
 
 
 class Variant(NamedTuple):
-    """What is different: in the agent, in the way it moves, in the least number of passes."""
+    """What is different: fields of the configurations, the least number of passes."""
 
-    agent: _Change = _same
-    motion: MotionConfig = MotionConfig()
+    agent: Mapping[str, Any] = _NOTHING
+    planner: Mapping[str, Any] = _NOTHING
+    situation: Mapping[str, Any] = _NOTHING
+    motion: Mapping[str, Any] = _NOTHING
     min_passes: int = 2
+
+    def change(self, config: ReactivePlannerConfig) -> ReactivePlannerConfig:
+        """Return a configuration with what is different in the agent."""
+        return replace(
+            config,
+            **self.agent,
+            planner=replace(config.planner, **self.planner),
+            situation=replace(config.situation, **self.situation),
+        )
 
 
 VARIANTS = {
     "as is": Variant(),
-    "planner may run into things": Variant(
-        lambda c: replace(c, planner=replace(c.planner, occupied=1.1))
-    ),
-    "planner keeps no margin": Variant(lambda c: replace(c, planner=replace(c.planner, margin=0))),
-    "planner keeps 0.1 m": Variant(lambda c: replace(c, planner=replace(c.planner, margin=0.1))),
-    "k_ind 0.02": Variant(lambda c: replace(c, k_ind=0.02)),
-    "k_ind 0.1": Variant(lambda c: replace(c, k_ind=0.1)),
-    "direction on the circle": Variant(
-        lambda c: replace(c, situation=replace(c.situation, circular=True))
-    ),
-    "direction on the segment": Variant(
-        lambda c: replace(c, situation=replace(c.situation, circular=False))
-    ),
-    "memory of good actions": Variant(lambda c: replace(c, remember_good_actions=True)),
-    "sigma floor 0.1": Variant(lambda c: replace(c, sigma_floor=0.1)),
-    "sigma floor 0.001": Variant(lambda c: replace(c, sigma_floor=0.001)),
-    "unknown: stay": Variant(lambda c: replace(c, no_match="stay")),
-    "unknown: nearest": Variant(lambda c: replace(c, no_match="nearest")),
+    "planner may run into things": Variant(planner={"occupied": 1.1}),
+    "planner keeps no margin": Variant(planner={"margin": 0.0}),
+    "planner keeps 0.1 m": Variant(planner={"margin": 0.1}),
+    "k_ind 0.02": Variant({"k_ind": 0.02}),
+    "k_ind 0.1": Variant({"k_ind": 0.1}),
+    "direction on the circle": Variant(situation={"circular": True}),
+    "direction on the segment": Variant(situation={"circular": False}),
+    "memory of good actions": Variant({"remember_good_actions": True}),
+    "sigma floor 0.1": Variant({"sigma_floor": 0.1}),
+    "sigma floor 0.001": Variant({"sigma_floor": 0.001}),
+    "unknown: stay": Variant({"no_match": "stay"}),
+    "unknown: nearest": Variant({"no_match": "nearest"}),
+    "unknown: plan": Variant({"no_match": "plan"}),
     "one pass is enough": Variant(min_passes=1),
-    "no retreat": Variant(motion=MotionConfig(retract=0.0)),
-    "ahead ±45°": Variant(motion=MotionConfig(ahead=math.radians(45), beside=10.0)),
-    "ahead ±60°": Variant(motion=MotionConfig(ahead=math.radians(60), beside=10.0)),
-    "security distance 0.1 m": Variant(motion=MotionConfig(security_distance=0.1)),
+    "no retreat": Variant(motion={"retract": 0.0}),
+    "ahead ±45°": Variant(motion={"ahead": math.radians(45), "beside": 10.0}),
+    "ahead ±60°": Variant(motion={"ahead": math.radians(60), "beside": 10.0}),
+    "security distance 0.1 m": Variant(motion={"security_distance": 0.1}),
 }
 
 
@@ -98,8 +100,8 @@ class Ablations(Experiment):
     def work(self, run: Run, folder: Path) -> Result:
         """Learn the room with one thing changed."""
         variant = VARIANTS[run.case]
-        config = variant.agent(find_config(run.config))
-        options = {"motion": variant.motion}
+        config = variant.change(find_config(run.config))
+        options = {"motion": MotionConfig(**variant.motion)}
         with nomad_mj.load(
             "path_finding", room=run.room, robot=run.robot, task_kwargs=options
         ) as env:

@@ -23,7 +23,7 @@ from nomad_agents.experiments.experiment import (
 )
 from nomad_agents.experiments.filming import Camera
 from nomad_agents.experiments.learnt import acting_agent, trained_agent
-from nomad_agents.experiments.measures import DECISIONS, UNSEEN_SEED, episode_rows, unseen_starts
+from nomad_agents.experiments.measures import UNSEEN_SEED, episode_rows, unseen_starts
 from nomad_agents.experiments.pictures import Film
 from nomad_agents.experiments.runs import Result, Row, Run
 from nomad_agents.training import stream
@@ -33,6 +33,7 @@ from nomad_mj.movers import MovingGoal, MovingObstacles
 LEARNING = {"learning off": False, "learning on": True}
 _EPISODE, _EXPLORE = 30, 31  # kinds of streams
 _FILMS = 4
+_DECISIONS = 100  # a goal that moves away takes longer than one that stays
 
 
 _LINES = (
@@ -112,7 +113,7 @@ def drive(
         explore = np.random.default_rng(stream(key[0], _EXPLORE, number)) if learning else None
         with Camera(env) as camera:
             episode = camera.run(
-                agent, stream(key[0], _EPISODE, number), start, explore, DECISIONS
+                agent, stream(key[0], _EPISODE, number), start, explore, _DECISIONS
             )
         # The shortest way to a goal that moves depends on where it will go.
         trials.append(Trial(start, episode, camera.track, float("nan")))
@@ -151,7 +152,9 @@ class GoalMoves(_Moving):
     def judge(self, results: Sequence[Result]) -> Verdict:
         """Ask for nearly every goal."""
         off, on = (float(np.mean(column(results, "success_rate", case))) for case in LEARNING)
-        reason = f"the goal is reached in {off:.1%} of the episodes, in {on:.1%} if learning goes on"
+        reason = (
+            f"the goal is reached in {off:.1%} of the episodes, in {on:.1%} if learning goes on"
+        )
         if off >= 0.98:
             return Verdict("holds", reason)
         return Verdict("holds in part" if off >= 0.8 else "does not hold", reason)
@@ -175,7 +178,9 @@ class ObstaclesMove(_Moving):
         """Ask for goals that are reached without a contact."""
         reached = float(np.mean(column(results, "success_rate", "learning off")))
         clear = float(np.mean(column(results, "no_contact_rate", "learning off")))
-        reason = f"the goal is reached in {reached:.1%} of the episodes, {clear:.1%} have no contact"
+        reason = (
+            f"the goal is reached in {reached:.1%} of the episodes, {clear:.1%} have no contact"
+        )
         if reached >= 0.95 and clear >= 0.99:
             return Verdict("holds", reason)
         return Verdict("holds in part" if reached >= 0.8 else "does not hold", reason)

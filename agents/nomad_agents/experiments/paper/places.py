@@ -212,6 +212,4 @@ class Adapting(Experiment):
         """Show the robot after adapting."""
         case = next(iter(PLACES))
         run = Run(self.name, case, LEARNER, study.config, study.room, study.robot, 0)
-        return Showcase(
-            _open(run), kept_agent(run, folder), [0, 1, 2], subtitle=f"{case}, adapted"
-        )
+        return Showcase(_open(run), kept_agent(run, folder), [0, 1, 2], subtitle=f"{case}, adapted")
