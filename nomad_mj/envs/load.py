@@ -3,10 +3,11 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import Any, Literal, overload
+from typing import Any, Literal, get_type_hints, overload
 
 import numpy as np
 
+from nomad_mj.envs.option_types import check_types
 from nomad_mj.envs.path_finding import PathFinding, PathFindingConfig
 from nomad_mj.errors import ConfigError, UnknownNameError
 from nomad_mj.scene import Scene, build_scene
@@ -16,6 +17,11 @@ TASKS = ("motor", "path_finding")
 DEFAULT_ROOM = "paper_room"
 DEFAULT_ROBOT = "nomad200"
 SCENE_OPTIONS = ("rays_per_cone", "moving_goal", "moving_obstacles")
+_TASK_TYPES = {
+    "rays_per_cone": int | None,
+    **get_type_hints(MotorConfig),
+    **get_type_hints(PathFindingConfig),
+}
 
 
 def _config(cls: type[Any], options: dict[str, Any]) -> Any:
@@ -102,6 +108,8 @@ def load(
         known += [f.name for f in fields(PathFindingConfig)]
     _refuse("task option", options, known)
     _refuse("environment option", environment, accepts)
+    check_types("task option", options, _TASK_TYPES)
+    check_types("environment option", environment, {"time_limit": float, "flat_observation": bool})
     noise: RangeNoise = options.get("range_noise", RangeNoise())
     of_scene = {name: options.pop(name) for name in SCENE_OPTIONS if name in options}
     scene = build_scene(

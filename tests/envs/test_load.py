@@ -81,6 +81,33 @@ REFUSED: list[tuple[dict[str, Any], type[NomadError], str]] = [
     ({"task_kwargs": {"random": -1}}, ConfigError, "seed -1: must be a whole number from 0 on"),
     ({"task_kwargs": {"rays_per_cone": 1}}, ConfigError, "rays per cone: 1 is not in 2 to 64"),
     ({"task_kwargs": {"goal_radius": 0}}, ConfigError, "goal radius 0: must be above 0 m"),
+    (
+        {"task_kwargs": {"goal_radius": "x"}},
+        ConfigError,
+        "task option 'goal_radius': must be a number, not 'x'",
+    ),
+    ({"task_kwargs": {"goal_radius": True}}, ConfigError, "must be a number, not True"),
+    ({"task_kwargs": {"range_noise": 0.3}}, ConfigError, "must be a RangeNoise, not 0.3"),
+    ({"task_kwargs": {"odometry_noise": None}}, ConfigError, "be an OdometryNoise, not None"),
+    ({"task_kwargs": {"action": (1, 2)}}, ConfigError, "'action': must be an ActionSpec, not (1,"),
+    ({"task_kwargs": {"motion": "x" * 99}}, ConfigError, "must be a MotionConfig, not 'xxx"),
+    ({"task_kwargs": {"rays_per_cone": 2.5}}, ConfigError, "a whole number or None, not 2.5"),
+    ({"task_kwargs": {"range_noise": np.eye(9)}}, ConfigError, "not array([[1., 0., 0."),
+    (
+        {"task_name": "motor", "task_kwargs": {"ends_at_goal": 1}},
+        ConfigError,
+        "task option 'ends_at_goal': must be True or False, not 1",
+    ),
+    (
+        {"environment_kwargs": {"time_limit": "1 s"}},
+        ConfigError,
+        "environment option 'time_limit': must be a number, not '1 s'",
+    ),
+    (
+        {"task_name": "motor", "environment_kwargs": {"flat_observation": "no"}},
+        ConfigError,
+        "environment option 'flat_observation': must be True or False, not 'no'",
+    ),
     ({"room": "nowhere"}, UnknownNameError, "unknown room 'nowhere'; there are: clutter, "),
     ({"robot": "r2d2"}, UnknownNameError, "unknown robot 'r2d2'; there are: nomad200, "),
 ]
@@ -93,6 +120,18 @@ def test_what_cannot_be_is_refused_in_one_line(
     with pytest.raises(error) as caught:
         load(**arguments)
     assert message in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_numbers_of_numpy_will_do_for_pythons() -> None:
+    options: dict[str, Any] = {
+        "goal_radius": np.float32(0.25),
+        "ends_at_goal": np.bool_(False),
+        "rays_per_cone": np.int64(3),
+    }
+    env = load("motor", task_kwargs=options, environment_kwargs={"time_limit": 1})
+    assert env.task.config.goal_radius == 0.25 and not env.task.config.ends_at_goal
+    assert len(env.task.scene.robot.rays.address) == 96
+    env.close()
 
 
 def test_mappings_of_options_are_left_as_they_were() -> None:
