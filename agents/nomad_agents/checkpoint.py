@@ -6,7 +6,7 @@ No pickle: arrays, and one JSON text under ``metadata``.
 import json
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib.metadata import version
 from pathlib import Path
 from typing import IO, Any, NamedTuple, TypeVar
@@ -25,13 +25,28 @@ _T = TypeVar("_T")
 
 
 class Checkpoint(NamedTuple):
-    """What a checkpoint file holds; `training` is the state of `training.Training`, as data."""
+    """What a checkpoint file holds.
+
+    Attributes
+    ----------
+    agent : ReactivePlanner
+        What was learnt.
+    layout : SensorLayout
+        The sensors it was learnt with.
+    room, robot : str
+        Their names.
+    training : dict
+        The state of `training.Training`, as data.
+    conditions : dict
+        Goal, movers and errors of the sensors, where they are told; see `cli.task_options`.
+    """
 
     agent: ReactivePlanner
     layout: SensorLayout
     room: str
     robot: str
     training: dict[str, Any]
+    conditions: dict[str, Any]
 
 
 def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
@@ -60,7 +75,12 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
 
 
 def save_checkpoint(
-    path: Path, agent: ReactivePlanner, room: str, robot: str, training: dict[str, Any]
+    path: Path,
+    agent: ReactivePlanner,
+    room: str,
+    robot: str,
+    training: dict[str, Any],
+    conditions: Mapping[str, Any] | None = None,
 ) -> None:
     """Write a checkpoint, whole or not at all; errors as of `write_atomically`."""
     metadata = {
@@ -72,6 +92,7 @@ def save_checkpoint(
         "room": room,
         "robot": robot,
         "training": training,
+        "conditions": dict(conditions or {}),
         "packages": {
             "nomad-mj": version("nomad-mj"),
             "mujoco": mujoco.__version__,
@@ -117,7 +138,9 @@ def load_checkpoint(path: Path) -> Checkpoint:
         agent.network.restore(arrays)
         training: dict[str, Any] = dict(metadata["training"])
         agent.plannings = int(training["plannings"])
-        return Checkpoint(agent, layout, str(metadata["room"]), str(metadata["robot"]), training)
+        conditions = dict(metadata.get("conditions", {}))  # files of before have none
+        names = str(metadata["room"]), str(metadata["robot"])
+        return Checkpoint(agent, layout, *names, training, conditions)
     except Exception as error:  # nor what numbers of any size do to a configuration
         raise _corrupt(path, str(error)) from None
 

@@ -2,7 +2,10 @@
 
 import csv
 import json
+import os
 import re
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
@@ -85,11 +88,44 @@ def test_help_lists_the_commands(run: Run) -> None:
 
 
 @pytest.mark.parametrize(
-    "arguments", [["nothing"], [], ["train", "--no-such-option"], ["train", "--seed", "x"]]
+    ("arguments", "told"),
+    [
+        ("nothing", "unknown command 'nothing'; there are: bench, demo, evaluate, "),
+        ("", "the command must come first, one of: train, evaluate, "),
+        ("--json train", "the command must come first, one of: train, "),
+        ("train --no-such-option", "train: unknown option '--no-such-option'; there are: --room "),
+        ("train --sed 3", "train: unknown option '--sed'; did you mean --seed?"),
+        ("evaluate --gaol 3,4", "evaluate: unknown option '--gaol'; did you mean --goal?"),
+        ("train --width 9", "train: unknown option '--width'; there are: "),
+        ("train more", "train: takes no argument 'more'; options are: --room "),
+        ("train --json=maybe", "train: takes no argument 'maybe'"),
+        ("train --seed", "train: Missing value for argument '--seed'"),
+        ("train --seed x", "train: --seed 'x': must be a whole number"),
+        ("train --seed 1.5", "train: --seed '1.5': must be a whole number"),
+        ("record --fps often", "record: --fps 'often': must be a number"),
+        ("record --fps=a:\u2500\u2500\u2500", "record: --fps"),
+    ],
 )
-def test_what_is_no_command_exits_2_without_a_traceback(run: Run, arguments: list[str]) -> None:
-    said = run(*arguments)
-    assert said.code == 2 and "Traceback" not in said.err
+def test_what_is_no_command_is_answered_in_one_line(run: Run, arguments: str, told: str) -> None:
+    assert told in refused(run(*arguments.split()))
+
+
+def test_a_choice_that_there_is_not_lists_those_there_are(run: Run) -> None:
+    told = refused(run("reproduce", "no-such-experiment"))
+    assert "no-such-experiment" in told and "fig6" in told
+
+
+@pytest.mark.parametrize(("columns", "encoding"), [("20", "utf-8"), ("300", "ascii")])
+def test_it_is_one_line_on_any_terminal(columns: str, encoding: str) -> None:
+    ended = subprocess.run(
+        [sys.executable, "-m", "nomad_agents.cli.main", "train", "--seed", "x"],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "COLUMNS": columns, "PYTHONIOENCODING": encoding},
+    )
+    assert ended.returncode == 2 and ended.stdout == ""
+    assert ended.stderr == "nomad-mj: train: --seed 'x': must be a whole number\n"
 
 
 def test_an_unknown_configuration_lists_those_there_are(run: Run) -> None:

@@ -2,13 +2,12 @@
 
 import math
 import pickle
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import OwnRoom, RingRobot
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -19,6 +18,8 @@ from nomad_mj.scene import build_scene
 from nomad_mj.tasks import MotorConfig, MotorTask
 from nomad_mj.types import FloatArray, SensorLayout
 
+OwnRoom = Callable[..., Path]
+RingRobot = Callable[..., Path]
 ALL = math.pi / 2  # every echo comes back
 SONARS = 16
 

@@ -9,8 +9,9 @@ from rich.console import Console
 from rich.table import Table
 
 from nomad_agents.agent import Agent
-from nomad_agents.cli.common import console, interruptible, output_file, path_finding, print_json
+from nomad_agents.cli.common import console, interruptible, output_file, print_json
 from nomad_agents.cli.evaluate import format_metric, run_evaluation
+from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.cli.train import run_training
 from nomad_agents.evaluation import Trial, draw_starts, summarise
 from nomad_agents.experiments.figures import draw_actions, draw_paths, lattice, lattice_actions
@@ -18,10 +19,9 @@ from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.recording import record
 from nomad_agents.registry import find_config, make_agent
 from nomad_agents.training import Training, TrainingConfig, training_report
-from nomad_mj.envs import DEFAULT_ROBOT, PathFinding
+from nomad_mj.envs import DEFAULT_ROOM, PathFinding
 from nomad_mj.errors import RenderError
 
-ROOM = "paper_room"
 # Section 4 of the paper.
 PAPER = {
     "reactions": "1424",
@@ -49,8 +49,8 @@ _LATTICE = 0.5  # [m] between the places of Fig 7
 
 
 @dataclass(frozen=True)
-class Demo:
-    """Train in the paper's room, print the table beside the paper's, write video and figures."""
+class Demo(TaskOptions):
+    """Train in a room, the paper's by default, print the table, write video and figures."""
 
     config: str = "faithful"
     """Parameters: faithful (the paper's) or tuned (better ones found since)."""
@@ -63,24 +63,26 @@ class Demo:
     speed: float = 4.0
     """Video time runs so many times faster than simulated time."""
     out: str = "renders"
-    """Folder for paper_room.npz, paper_room.mp4, fig6.png and fig7.png."""
+    """Folder for ROOM.npz, ROOM.mp4, fig6.png and fig7.png."""
     json: bool = False
     """Print one line of JSON last on standard output."""
 
     def run(self) -> int:
         """Train, compare, draw and record; return the exit code."""
         screen = console(json_wanted=self.json)
-        with path_finding(ROOM, DEFAULT_ROBOT) as env, interruptible():
-            path = output_file(self.out, ROOM, ".npz")
+        with self.path_finding() as env, interruptible():
+            path = output_file(self.out, env.scene.arena.name, ".npz")
             agent = ReactivePlanner(env.scene.robot.layout, find_config(self.config))
             training = Training()
-            run_training(env, agent, TrainingConfig(self.seed), training, path, screen)
+            settings = TrainingConfig(self.seed)
+            run_training(env, agent, settings, training, path, screen, self.conditions())
             report = training_report(env, agent, training)
             summaries = self._compare(env, agent, screen)
-            screen.print(_table({**report, "seed": self.seed}, summaries))
+            title = f"{path.stem}, seed {self.seed}"
+            screen.print(_table(title, report, summaries, as_paper=path.stem == DEFAULT_ROOM))
             trials = self._draw(env, agent, path.parent, screen)
             shown = self._record(env, agent, trials, path.with_suffix(".mp4"), screen)
-        files = [path.name, "fig6.png", "fig7.png", *([f"{ROOM}.mp4"] if shown else [])]
+        files = [path.name, "fig6.png", "fig7.png", *([f"{path.stem}.mp4"] if shown else [])]
         screen.print(f"In {path.parent}: {', '.join(files)}", soft_wrap=True)
         if self.json:
             print_json({"training": report, "unseen": summaries})
@@ -135,16 +137,19 @@ def _spread(places: np.ndarray, count: int) -> list[int]:
     return chosen
 
 
-def _table(report: dict[str, Any], summaries: dict[str, dict[str, Any]]) -> Table:
+def _table(
+    title: str, report: dict[str, Any], summaries: dict[str, dict[str, Any]], *, as_paper: bool
+) -> Table:
     """Return the table paper | this run | straight to the goal | planner at every decision."""
-    table = Table(title=f"{ROOM}, seed {report['seed']}")
+    paper = PAPER if as_paper else dict.fromkeys(PAPER, "")
+    table = Table(title=title)
     for heading in ("", "paper", "this run", "straight to\nthe goal", "planner at every\ndecision"):
         table.add_column(heading, justify="right" if heading else "left")
     table.add_row("while learning")
     solved = f"{report['solved']} of {report['starts']}"
-    table.add_row("  starts solved", "50 of 50", solved)
+    table.add_row("  starts solved", "50 of 50" if as_paper else "", solved)
     for key, label in LEARNING_ROWS.items():
-        table.add_row(f"  {label}", PAPER[key], str(report[key]))
+        table.add_row(f"  {label}", paper[key], str(report[key]))
     table.add_section()
     table.add_row(f"on {summaries[ReactivePlanner.name]['episodes']} unseen starts")
     for key, label in UNSEEN_ROWS.items():

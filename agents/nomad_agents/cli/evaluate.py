@@ -10,11 +10,12 @@ from rich.table import Table
 
 from nomad_agents.agent import Agent
 from nomad_agents.checkpoint import write_atomically
-from nomad_agents.cli.common import console, interruptible, output_file, path_finding, print_json
+from nomad_agents.cli.common import console, interruptible, output_file, print_json
 from nomad_agents.cli.progress import trial_progress
+from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.evaluation import Trial, draw_starts, evaluate, read_starts, summarise
 from nomad_agents.registry import find_agent, find_config
-from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, PathFinding
+from nomad_mj.envs import PathFinding
 from nomad_mj.errors import ConfigError
 from nomad_mj.types import FloatArray
 
@@ -33,15 +34,11 @@ METRICS = {
 
 
 @dataclass(frozen=True)
-class Evaluate:
+class Evaluate(TaskOptions):
     """Run an agent greedily from many starts and measure how it does."""
 
     agent: str = "planner"
     """Checkpoint, .npz, or name of an agent."""
-    room: str = DEFAULT_ROOM
-    """Name of a room, or an MJCF file."""
-    robot: str = DEFAULT_ROBOT
-    """Name of a robot, or an MJCF file."""
     config: str = "faithful"
     """Parameters of an agent given by name, faithful or tuned; a checkpoint has its own."""
     starts: str = "200"
@@ -58,7 +55,7 @@ class Evaluate:
     def run(self) -> int:
         """Evaluate; return the exit code."""
         screen = console(json_wanted=self.json)
-        with path_finding(self.room, self.robot) as env, interruptible():
+        with self.path_finding() as env, interruptible():
             agent = find_agent(self.agent, env.scene.robot.layout, find_config(self.config))
             name = f"{env.scene.arena.name}_{agent.name}_evaluation"
             path = output_file(self.out, name, ".csv") if self.out else None

@@ -4,24 +4,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from nomad_agents.cli.common import console, interruptible, output_file, path_finding, print_json
+from nomad_agents.cli.common import console, interruptible, output_file, print_json
 from nomad_agents.cli.evaluate import choose_starts
+from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.recording import record
 from nomad_agents.registry import find_agent, find_config
-from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
 from nomad_mj.tasks import Start
 
 
 @dataclass(frozen=True)
-class Record:
+class Record(TaskOptions):
     """Record an agent on video, MP4: the room, the sensors, what it perceives and decides."""
 
     agent: str = "planner"
     """Checkpoint, .npz, or name of an agent."""
-    room: str = DEFAULT_ROOM
-    """Name of a room, or an MJCF file."""
-    robot: str = DEFAULT_ROBOT
-    """Name of a robot, or an MJCF file."""
     config: str = "faithful"
     """Parameters of an agent given by name, faithful or tuned; a checkpoint has its own."""
     starts: str = "1"
@@ -48,7 +44,7 @@ class Record:
     def run(self) -> int:
         """Record; return the exit code."""
         screen = console(json_wanted=self.json)
-        with path_finding(self.room, self.robot) as env, interruptible():
+        with self.path_finding() as env, interruptible():
             agent = find_agent(self.agent, env.scene.robot.layout, find_config(self.config))
             path = output_file(self.out, f"{env.scene.arena.name}_{agent.name}", ".mp4")
             places: Sequence[Start] = choose_starts(env, self.starts, self.seed).tolist()

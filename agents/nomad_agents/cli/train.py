@@ -7,29 +7,20 @@ from typing import Any
 from rich.console import Console
 
 from nomad_agents.checkpoint import load_checkpoint, save_checkpoint, structure
-from nomad_agents.cli.common import (
-    console,
-    interruptible,
-    output_file,
-    path_finding,
-    print_json,
-)
+from nomad_agents.cli.common import console, interruptible, output_file, print_json
 from nomad_agents.cli.progress import TrainingProgress
+from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner
 from nomad_agents.registry import find_agent, find_config
 from nomad_agents.training import Training, TrainingConfig, train, training_report
-from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, PathFinding
+from nomad_mj.envs import PathFinding
 from nomad_mj.errors import CheckpointError, ConfigError
 
 
 @dataclass(frozen=True)
-class Train:
+class Train(TaskOptions):
     """Train the reactive planner until a greedy test solves every start of the room."""
 
-    room: str = DEFAULT_ROOM
-    """Name of a room, or an MJCF file."""
-    robot: str = DEFAULT_ROBOT
-    """Name of a robot, or an MJCF file."""
     agent: str = "reactive_planner"
     """Name of an agent that learns, or a checkpoint, .npz, to go on learning with what it knows."""
     config: str = "faithful"
@@ -53,14 +44,14 @@ class Train:
             self.seed, max_passes=self.max_passes, max_decisions=self.max_decisions
         )
         screen = console(json_wanted=self.json)
-        with path_finding(self.room, self.robot) as env, interruptible():
+        with self.path_finding() as env, interruptible():
             name = f"{env.scene.arena.name}_{ReactivePlanner.name}_{self.seed}"
             path = output_file(self.out, name, ".npz")
             if self.resume and path.exists():
                 agent, training = self._resume(env, path)
             else:
                 agent, training = self._begin(env), Training()
-            run_training(env, agent, settings, training, path, screen)
+            run_training(env, agent, settings, training, path, screen, self.conditions())
             report = training_report(env, agent, training)
             screen.print(f"{_verdict(report, training)}: {path}", soft_wrap=True)
         if self.json:
@@ -99,6 +90,7 @@ class Train:
             if mine != theirs:
                 told = f": {theirs}, not {mine}" if isinstance(mine, str | int) else ""
                 raise CheckpointError(f"cannot resume {str(path)!r}: it is of another {what}{told}")
+        self.require_same(checkpoint.conditions, str(path))
         state = {k: v for k, v in checkpoint.training.items() if k != "seed"}
         try:
             return checkpoint.agent, structure(state, Training)
@@ -113,9 +105,11 @@ def run_training(
     training: Training,
     path: Path,
     screen: Console,
+    conditions: dict[str, Any],
 ) -> None:
     """Train with a progress bar; write a checkpoint after each pass and at the end.
 
+    `conditions` are those of `TaskOptions.conditions`, for the checkpoint to tell.
     Interrupted, it writes one as of the last whole episode and raises KeyboardInterrupt: training
     can go on from there to the same bits.
     """
@@ -123,7 +117,8 @@ def run_training(
     def save() -> None:
         scene = env.scene
         state = {**asdict(training), "seed": settings.seed}
-        save_checkpoint(path, agent, scene.arena.name, scene.robot.name, state)
+        names = scene.arena.name, scene.robot.name
+        save_checkpoint(path, agent, *names, state, conditions)
 
     with TrainingProgress(screen, len(env.scene.arena.starts)) as progress:
 
