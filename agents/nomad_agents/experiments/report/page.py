@@ -80,7 +80,8 @@ def write_report(
         A picture or video cannot be read, the page cannot be written.
     """
     parts = [
-        _part(anchor, section) for anchor, section in zip(_anchors(sections), sections, strict=True)
+        _part(anchor, section, path.parent)
+        for anchor, section in zip(_anchors(sections), sections, strict=True)
     ]
     counts = {mark: sum(part.mark == mark for part in parts) for mark in _VERDICTS.values()}
     text = _template().render(parts=parts, facts=facts, seeds=seeds, counts=counts)
@@ -104,7 +105,7 @@ def _anchors(sections: Sequence[Section]) -> Iterator[str]:
         yield word
 
 
-def _part(anchor: str, section: Section) -> _Part:
+def _part(anchor: str, section: Section, folder: Path) -> _Part:
     headings, rows = _telling(section.table)
     figures = [
         _Figure(
@@ -117,7 +118,8 @@ def _part(anchor: str, section: Section) -> _Part:
     video = section.video
     film = None
     if not isinstance(video, NoVideo):
-        file = f"{video.path.parent.name}/{video.path.name}"
+        near = video.path.is_relative_to(folder)
+        file = video.path.relative_to(folder).as_posix() if near else video.path.name
         film = _Film(data_uri(video.path), picture(video.poster), video.caption, file)
     no_film = video.reason if isinstance(video, NoVideo) else ""
     mark = _VERDICTS[section.verdict.holds]
