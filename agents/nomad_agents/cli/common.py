@@ -15,7 +15,7 @@ import nomad_mj
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import OutputError
 
-SUFFIXES = {".npz", ".mp4", ".csv"}
+SUFFIXES = {".npz", ".mp4", ".csv", ".html"}
 
 
 def console(*, json_wanted: bool) -> Console:

@@ -1,8 +1,7 @@
 """``nomad-mj reproduce``."""
 
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import tyro
 from rich.console import Console
@@ -10,11 +9,11 @@ from rich.console import Console
 from nomad_agents.cli.common import console, interruptible, output_file, path_finding, print_json
 from nomad_agents.cli.progress import run_progress
 from nomad_agents.experiments.experiment import Experiment, Study
-from nomad_agents.experiments.export import export
 from nomad_agents.experiments.paper import EXPERIMENTS, EXTRA
-from nomad_agents.experiments.presentation import Presentation, present
+from nomad_agents.experiments.presentation import find, numbers, present
 from nomad_agents.experiments.reproduction import Results, count_runs, on_file, reproduce
 from nomad_agents.experiments.runs import Result
+from nomad_agents.experiments.tables import as_rich
 from nomad_agents.registry import find_config
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
 from nomad_mj.errors import ConfigError, UnknownNameError
@@ -44,8 +43,8 @@ class Reproduce:
     """Processes."""
     out: str = "renders"
     """Folder for report.html and, under reproduce/CONFIG, one file a run, tables and figures."""
-    videos: bool = True
-    """Record a video of each experiment."""
+    no_videos: bool = False
+    """Record no video of each experiment."""
     only_read: bool = False
     """Run nothing: show what is on file."""
     json: bool = False
@@ -62,17 +61,36 @@ class Reproduce:
         study = Study(self.config, self.room, self.robot, self.seeds)
         screen = console(json_wanted=self.json)
         folder = output_file(f"{self.out}/reproduce/{self.config}/runs", "probe", ".csv").parent
+        report = output_file(self.out, "report", ".html")
         with interruptible():
             results = self._results(experiments, study, folder, screen)
-            shown = [each for each in experiments if results[each.name]]
-            if not shown:
-                raise ConfigError(f"no run of {', '.join(self.experiments)} is on file in {folder}")
-            export([result for each in results.values() for result in each], folder.parent)
-            report = Path(self.out) / "report.html"
-            presentation = present(shown, results, study, folder, report, self.videos, screen)
-        self._print(presentation, screen)
+            findings = find(experiments, results, study)
+            if not findings:
+                raise ConfigError(
+                    f"{folder} holds no experiment of {', '.join(self.experiments)} with a run of "
+                    "every case; run without --only-read"
+                )
+            for finding in findings:
+                screen.print(as_rich(finding.table))
+                screen.print(f"{finding.verdict.holds}: {finding.verdict.reason}", soft_wrap=True)
+            with screen.status("") as status:
+                remarks = present(
+                    findings,
+                    results,
+                    study,
+                    folder,
+                    report,
+                    videos=not self.no_videos,
+                    tell=status.update,
+                )
+        for line in [*remarks, f"Report: {report}"]:
+            screen.print(line, soft_wrap=True)
         if self.json:
-            print_json({each.name: _numbers(results[each.name]) for each in shown})
+            told = {
+                each.name: {"verdict": verdict.holds, "numbers": numbers(each, results[each.name])}
+                for each, _, verdict in findings
+            }
+            print_json(told)
         return 0
 
     def _results(
@@ -100,15 +118,6 @@ class Reproduce:
                 )
                 raise
 
-    def _print(self, presentation: Presentation, screen: Console) -> None:
-        for table in presentation.tables:
-            screen.print(table)
-        for name, verdict in presentation.verdicts.items():
-            screen.print(f"{name}: {verdict.holds}: {verdict.reason}", soft_wrap=True)
-        for line in presentation.remarks:
-            screen.print(line, soft_wrap=True)
-        screen.print(f"Report: {presentation.report}", soft_wrap=True)
-
 
 def choose(names: tuple[str, ...]) -> list[Experiment]:
     """Return the experiments of some names, in the catalogue's order.
@@ -125,8 +134,3 @@ def choose(names: tuple[str, ...]) -> list[Experiment]:
     if ALL in wanted or not wanted:
         wanted |= set(EXPERIMENTS) - set(EXTRA)
     return [each for name, each in EXPERIMENTS.items() if name in wanted]
-
-
-def _numbers(results: list[Result]) -> dict[str, Any]:
-    """Return the medians of an experiment's numbers, by agent and case."""
-    raise NotImplementedError
