@@ -167,6 +167,14 @@ def test_a_long_caption_stays_clear_of_the_time() -> None:
     np.testing.assert_array_equal(frame[:, right:], bare[:, right:])
 
 
+def test_a_long_title_is_written_smaller_instead_of_cut_off() -> None:
+    card = title_card("Learning to reach the goal from fifty starts", "", Box(0, 0, 320, 240), 1.0)
+    middle = card.colour[card.colour.shape[0] // 2 - 4 :][:8].min(axis=(0, 2))
+    written = np.flatnonzero(middle < 0.6 * middle.max())
+    assert card.behind.shape[1] <= 320
+    assert 8 < written[0] < 40 and 8 < len(middle) - written[-1] < 40
+
+
 def test_a_title_is_centred_and_never_wider_than_its_box() -> None:
     card = title_card("goal reached", "7 decisions", Box(0, 0, 640, 480), 1.0)
     assert card.x == (640 - card.behind.shape[1]) // 2
