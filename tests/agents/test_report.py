@@ -127,7 +127,7 @@ def three(section: Section, *others: Section) -> list[Section]:
     return [
         section,
         part,
-        replace(part, name="fig13", verdict=Verdict("does not hold", "None.")),
+        replace(part, name="fig13", verdict=Verdict("does not hold", "none does")),
         *others,
     ]
 
@@ -178,6 +178,7 @@ def test_verdicts_claims_tables_and_commands_are_told(section: Section, tmp_path
         a["class"].split("-")[1] for a in page.all("span") if a.get("class", "")[:5] == "chip "
     ]
     assert sorted(chips) == sorted(["holds", "part", "fails"] * 3)
+    assert {"All do.", "Some do.", "None does."} <= set(page.words["span"])
     heads = [word for word in page.words["th"] if word in section.table.headings]
     # A column in which nobody says anything is left out.
     assert "ours: median [quartiles]" in heads and "ours: IQM (95 %)" not in heads

@@ -35,6 +35,7 @@ class _Part(NamedTuple):
     anchor: str
     section: Section
     mark: str
+    reason: str
     headings: list[str]
     rows: list[list[str]]
     figures: list[_Figure]
@@ -123,7 +124,13 @@ def _part(anchor: str, section: Section, folder: Path) -> _Part:
         film = _Film(data_uri(video.path), picture(video.poster), video.caption, file)
     no_film = video.reason if isinstance(video, NoVideo) else ""
     mark = _VERDICTS[section.verdict.holds]
-    return _Part(anchor, section, mark, headings, rows, figures, film, no_film)
+    reason = _sentence(section.verdict.reason)
+    return _Part(anchor, section, mark, reason, headings, rows, figures, film, no_film)
+
+
+def _sentence(text: str) -> str:
+    """Return words as a sentence: verdicts are written without, to stand in a line of output."""
+    return f"{text[:1].upper()}{text[1:]}" + ("" if text.endswith((".", "!", "?")) else ".")
 
 
 def _telling(table: Tabular) -> tuple[list[str], list[list[str]]]:
