@@ -1,47 +1,22 @@
-"""The report: one page that holds everything, is well formed, and that a browser shows."""
+"""The report: one page that holds everything, is well formed, and the same every time."""
 
 import re
-from collections.abc import Generator
 from dataclasses import replace
 from html.parser import HTMLParser
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
 
-import numpy as np
 import pytest
-from browser import Browser, find_chromium
-from matplotlib.figure import Figure
+from known_report import Picture, Table, make_section, three
 from nomad_agents.experiments.experiment import Study, Verdict
-from nomad_agents.experiments.report import NoVideo, Section, Video, provenance, write_report
+from nomad_agents.experiments.report import NoVideo, Section, provenance, write_report
 from nomad_agents.experiments.runs import Result, Run
-from PIL import Image
 
 import nomad_mj
 from nomad_mj.errors import OutputError
-from nomad_mj.video import EpisodeRecorder
 
 ODD = """<script>alert("1 & 'x'")</script> é 大 {{ 7 * 7 }} """
-CHROMIUM = find_chromium()
 VOID = {"meta", "link", "img", "br", "rect", "path", "circle"}
-IMAGES = "Promise.all([...document.images].map(i => i.decode().then(() => i.naturalWidth)))"
-VIDEOS = """Promise.all([...document.querySelectorAll('video')].map(
-    v => new Promise((done, fail) => {
-        const tell = () => done([v.readyState, v.duration]);
-        v.onerror = () => fail(new Error(v.error.message));
-        v.readyState >= 1 ? tell() : v.onloadedmetadata = tell;
-    })
-))"""
-
-
-class Table(NamedTuple):
-    headings: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-
-
-class Picture(NamedTuple):
-    path: Path
-    caption: str
 
 
 class Page(HTMLParser):
@@ -76,60 +51,11 @@ class Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def section(tmp_path_factory: pytest.TempPathFactory) -> Section:
-    """Return a section with a table, a figure as PNG and PDF, and no video."""
-    folder = tmp_path_factory.mktemp("figures")
-    figure = Figure((4, 3))
-    figure.add_subplot().plot([0, 1, 0])
-    for suffix in ("png", "pdf"):
-        figure.savefig(folder / f"a.{suffix}", dpi=160)
-    table = Table(
-        ("", "paper", "ours: median [quartiles]", "ours: IQM (95 %)", "planner at every decision"),
-        (
-            ("seeds that solve all starts", "1 of 1", "20 of 20", "", ""),
-            ("reactions while learning", "1424", "760 [723, 786]", "", "1000.0 [1000.0, 1000.0]"),
-        ),
-    )
-    pictures = [Picture(folder / "a.png", "A line."), Picture(folder / "a.pdf", "It again.")]
-    return Section(
-        "fig6",
-        "Learning",
-        "It learns.",
-        "Section 4",
-        Verdict("holds", "All do."),
-        table,
-        pictures,
-        NoVideo("no OpenGL works here"),
-        "nomad-mj reproduce fig6 --seeds 20",
-    )
-
-
-@pytest.fixture(scope="module")
-def film(tmp_path_factory: pytest.TempPathFactory) -> Video:
-    """Return a real video of the room, where OpenGL works."""
-    path = tmp_path_factory.mktemp("videos") / "fig6.mp4"
-    with (
-        nomad_mj.load("path_finding", room="paper_room") as env,
-        EpisodeRecorder(env, path, view="overview", size=(320, 240), fps=10) as recorder,
-    ):
-        env.reset(seed=0, start=3)
-        recorder.start_episode("one move", pause=0.5)
-        env.step(np.array([0.5, 0.0]))
-    Image.new("RGB", (320, 240), "#1f9e77").save(path.with_suffix(".jpg"))
-    return Video(path, path.with_suffix(".jpg"), "One move.")
+    return make_section(tmp_path_factory.mktemp("figures"))
 
 
 def parse(path: Path) -> Page:
     return Page(path.read_text(encoding="utf-8"))
-
-
-def three(section: Section, *others: Section) -> list[Section]:
-    part = replace(section, name="fig9", verdict=Verdict("holds in part", "Some do."))
-    return [
-        section,
-        part,
-        replace(part, name="fig13", verdict=Verdict("does not hold", "none does")),
-        *others,
-    ]
 
 
 def test_the_page_is_whole_and_for_everybody(section: Section, tmp_path: Path) -> None:
@@ -238,70 +164,3 @@ def test_provenance_is_that_of_all_machines() -> None:
     assert facts["Machine"] == "A; B" and facts["Seeds"] == "0 to 1" and facts["Python"] == "3.12.1"
     assert facts["Runs"] == "1 of the learner, 1 of the baselines; 1.0 hours of computing"
     assert f"nomad-mj {nomad_mj.__version__}" in facts["Versions"]
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Generator[Browser, None, None]:
-    """Return a Chromium, the same for all tests."""
-    if CHROMIUM is None:
-        pytest.skip("there is no Chromium here; on Debian type: sudo apt-get install -y chromium")
-    with Browser(CHROMIUM, tmp_path_factory.mktemp("profile")) as started:
-        yield started
-
-
-def complaints(browser: Browser) -> list[dict[str, Any]]:
-    """Return what a page has complained of, and what it has asked the network for."""
-    asked = [
-        event
-        for event in browser.events
-        if event["method"] == "Network.requestWillBeSent"
-        and not event["params"]["request"]["url"].startswith(("data:", "file:", "about:"))
-    ]
-    told = ("Log.entryAdded", "Runtime.exceptionThrown", "Runtime.consoleAPICalled")
-    return asked + [event for event in browser.events if event["method"] in told]
-
-
-@pytest.mark.parametrize("width", [360, 768, 1200])
-def test_a_browser_shows_it(width: int, section: Section, tmp_path: Path, browser: Browser) -> None:
-    long = replace(section, name="a" * 80, title="b" * 120, command="c" * 300, source="d" * 99)
-    write_report(tmp_path / "r.html", three(section, long), [("e" * 90, "f" * 300)], seeds=20)
-    browser.events.clear()
-    browser.open(tmp_path / "r.html", width, scale=2.0 if width < 500 else 1.0)
-    assert min(browser.evaluate(IMAGES)) > 0
-    assert browser.evaluate("document.documentElement.scrollWidth") <= width
-    assert browser.evaluate("innerWidth") == width
-    (tmp_path / "seen.png").write_bytes(browser.screenshot())
-    with Image.open(tmp_path / "seen.png") as seen:
-        assert seen.width == width * (2 if width < 500 else 1)
-        assert len(seen.convert("RGB").getcolors(1 << 24) or []) > 50
-    assert complaints(browser) == []
-
-
-@pytest.mark.gl
-def test_a_browser_plays_the_videos(
-    section: Section, film: Video, tmp_path: Path, browser: Browser
-) -> None:
-    parts = [replace(part, video=film) for part in three(section)]
-    write_report(tmp_path / "r.html", parts)
-    browser.events.clear()
-    browser.open(tmp_path / "r.html", 360)
-    videos = browser.evaluate(VIDEOS)
-    assert len(videos) == 3 and all(ready >= 1 and seconds > 0.5 for ready, seconds in videos)
-    still = "[...document.querySelectorAll('.still')].every(i => i.offsetWidth === 0)"
-    assert browser.evaluate(still)
-    assert browser.evaluate("document.querySelector('video').play().then(() => true)")
-    assert complaints(browser) == []
-
-
-@pytest.mark.gl
-def test_it_prints_with_stills_for_videos(
-    section: Section, film: Video, tmp_path: Path, browser: Browser
-) -> None:
-    write_report(tmp_path / "r.html", [replace(section, video=film)])
-    browser.open(tmp_path / "r.html", 1200)
-    printed = browser.print_pdf()
-    assert printed.startswith(b"%PDF") and len(re.findall(rb"/Type\s*/Page\b", printed)) >= 2
-    browser.call("Emulation.setEmulatedMedia", media="print")
-    shown = "[...document.querySelectorAll('video, .still')].map(e => e.offsetWidth > 0)"
-    assert browser.evaluate(shown) == [False, True]
-    browser.call("Emulation.setEmulatedMedia", media="")
