@@ -174,7 +174,7 @@ def build_scene(
         set_rays_per_cone(robot_spec, rays_per_cone)
     report_surfaces(robot_spec, specular_rings)
     if goal is not None or moving_goal is not None:
-        place_goal(room_spec, room_path.stem, goal, moving_goal is not None)
+        place_goal(room_spec, goal, moving_goal is not None)
     added = add_obstacles(room_spec, moving_obstacles) if moving_obstacles else ()
     try:
         model = _compile(room_spec, robot_spec)

@@ -8,7 +8,15 @@ import pytest
 from nomad_mj import assets
 from nomad_mj.errors import ModelError, NomadError, UnknownNameError
 
-ROOMS = ("clutter", "concave_room", "concave_room_deep", "corridor", "empty_room", "paper_room")
+ROOMS = (
+    "clutter",
+    "concave_room",
+    "concave_room_deep",
+    "corridor",
+    "empty_room",
+    "moving_room",
+    "paper_room",
+)
 ROBOTS = ("nomad200", "nomad200_wheels")
 FIND: dict[str, Callable[[str | Path], Path]] = {
     "room": assets.find_room,

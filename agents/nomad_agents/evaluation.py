@@ -32,7 +32,8 @@ class Trial(NamedTuple):
     track : array (n, 2)
         True positions at every control step [m].
     shortest : float
-        Length of the shortest path of a disc of the robot's radius [m], inf if there is none.
+        Length of the shortest path of a disc of the robot's radius [m], among what stands and to
+        where the goal is at the start; inf if there is none.
     """
 
     start: FloatArray
@@ -167,7 +168,10 @@ def path_efficiency(reached: bool, shortest: float, length: float) -> float:
 
 
 def summarise(env: PathFinding, trials: list[Trial]) -> dict[str, float | int]:
-    """Return the metrics of `nomad-mj evaluate --json`; those of no episode are NaN."""
+    """Return the metrics of `nomad-mj evaluate --json`; those of no episode are NaN.
+
+    `min_clearance_m` is that to what stands; moving obstacles are not in it.
+    """
     episodes = [trial.episode for trial in trials]
     reached = [t for t in trials if t.episode.reached]
     ratios = [t.length / t.shortest for t in reached if 0 < t.shortest < np.inf]

@@ -63,7 +63,8 @@ class PathFinding(dm_env.Environment):
     out. Observations are those of the motor task after the move, and of the move itself:
     ``duration`` [s], ``driven`` (length of the way, there and back) [m], ``clearance`` (shortest
     reading on the way) [m], ``outcome`` (see `Outcome`). The reward is z of Eqs 6-8.
-    Reaching the goal ends the episode with discount 0, the time limit with discount 1.
+    Reaching the goal ends the episode with discount 0, the time limit with discount 1. A goal that
+    moves is reached if it is there when a move ends, not if it comes by during one.
 
     Parameters
     ----------

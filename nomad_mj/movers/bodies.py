@@ -88,37 +88,44 @@ def read_moving(
     """
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    _check(model, room)
     site = goal_site(model)
-    under = int(model.site_bodyid[site])
+    under = int(model.body_rootid[model.site_bodyid[site]])
+    _check_names(model, room)
     moving_goal = None
     if model.body_mocapid[under] >= 0:
-        drift = _drift(goal or _along(data, under), speed)
-        shift = data.site_xpos[site][:2] - data.xpos[under][:2]
+        _check_goal(model, room, under)
+        shift: list[float] = (data.site_xpos[site] - data.xpos[under]).tolist()
         moving_goal = MovingBody(
             room_name(model.body(under).name),
             int(model.body_mocapid[under]),
-            drift,
-            offset=(float(shift[0]), float(shift[1])),
+            _drift(goal or _along(data, under), speed),
+            offset=(shift[0], shift[1]),
         )
     found: list[MovingBody] = []
-    for body in range(1, model.nbody):
-        colliding = _colliding(model, body)
-        if body == under or not is_moving(model, body) or not colliding:
-            continue
-        name = room_name(model.body(body).name)
-        own = obstacles is not None and name in added
-        radius = max(reach(model, data, geom, data.xpos[body]) for geom in colliding)
-        found.append(
-            MovingBody(
-                name,
-                int(model.body_mocapid[body]),
-                _drift(obstacles if own and obstacles else _along(data, body), speed),
-                radius=radius,
-                home=None if own else (float(data.xpos[body][0]), float(data.xpos[body][1])),
-            )
-        )
+    for body in np.flatnonzero(model.body_mocapid >= 0).tolist():
+        if is_moving(model, body) and (geoms := _colliding(model, body)):
+            mine = obstacles if room_name(model.body(body).name) in added else None
+            found.append(_obstacle(model, data, body, geoms, speed, mine))
     return Moving(moving_goal, tuple(found))
+
+
+def _obstacle(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    body: int,
+    geoms: list[int],
+    speed: float,
+    config: MovingObstacles | None,
+) -> MovingBody:
+    """Return a moving obstacle of the options, which has a config, or of the room's file."""
+    x, y, _ = data.xpos[body].tolist()
+    return MovingBody(
+        room_name(model.body(body).name),
+        int(model.body_mocapid[body]),
+        _drift(config or _along(data, body), speed),
+        radius=max(reach(model, data, geom, data.xpos[body]) for geom in geoms),
+        home=(x, y) if config is None else None,
+    )
 
 
 def _along(data: mujoco.MjData, body: int) -> Drift:
@@ -139,7 +146,7 @@ def _colliding(model: mujoco.MjModel, body: int) -> list[int]:
     return [int(geom) for geom in np.flatnonzero(on_it & collides)]
 
 
-def _check(model: mujoco.MjModel, room: str) -> None:
+def _check_names(model: mujoco.MjModel, room: str) -> None:
     for body in range(1, model.nbody):
         name = room_name(model.body(body).name)
         if name.startswith(MOVING) and model.body_mocapid[model.body_rootid[body]] < 0:
@@ -147,9 +154,11 @@ def _check(model: mujoco.MjModel, room: str) -> None:
                 f'room {room!r}: body {name!r} cannot move: give it mocap="true", or a name that '
                 f"does not begin with {MOVING!r}"
             )
-    under = int(model.site_bodyid[goal_site(model)])
-    if model.body_mocapid[under] >= 0 and (colliding := _colliding(model, under)):
-        name = room_name(model.geom(colliding[0]).name) or f"geom {colliding[0]}"
+
+
+def _check_goal(model: mujoco.MjModel, room: str, under: int) -> None:
+    for geom in _colliding(model, under):
+        name = room_name(model.geom(geom).name) or f"geom {geom}"
         raise ModelError(
             f"room {room!r}: {name!r} moves with the goal, so nothing may run into it: give it "
             'contype="0" conaffinity="0"'

@@ -212,7 +212,7 @@ class Movers:
                 raise StartError(
                     f"moving obstacle {body.name!r} of radius {body.radius:g} m at "
                     f"({body.home[0]:g}, {body.home[1]:g}) is outside the room, in something or "
-                    "less than a robot's width from the goal; move it"
+                    "nearer the goal than a robot that stands there lets it; move it"
                 )
             homes.append(body.home)
 

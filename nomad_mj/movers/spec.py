@@ -6,21 +6,19 @@ import mujoco
 import numpy as np
 
 from nomad_mj.arenas.names import MOVING
-from nomad_mj.errors import ConfigError, ModelError
+from nomad_mj.errors import ConfigError
 from nomad_mj.movers.drift import MovingObstacles
 
 _LOOK = (0.55, 0.47, 0.66, 1.0)  # none of the rooms' own colours
 
 
-def place_goal(spec: mujoco.MjSpec, room: str, goal: Sequence[float] | None, moving: bool) -> None:
+def place_goal(spec: mujoco.MjSpec, goal: Sequence[float] | None, moving: bool) -> None:
     """Put the goal of a room elsewhere, or on a body that can move.
 
     Parameters
     ----------
     spec : mujoco.MjSpec
         The room; changed in place.
-    room : str
-        Its name, for errors.
     goal : (float, float) or None
         Where [m, world frame]; None for where it is.
     moving : bool
@@ -30,22 +28,20 @@ def place_goal(spec: mujoco.MjSpec, room: str, goal: Sequence[float] | None, mov
     ------
     ConfigError
         A goal that is no place.
-    ModelError
-        The room has no goal.
     """
     place = None if goal is None else _place(goal)
+    site = spec.site("goal")
+    if site is None:
+        return  # for `Arena.from_model` to complain about
     model = spec.copy().compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    site = spec.site("goal")
-    if site is None:
-        raise ModelError(f"room {room!r} has no site named 'goal', so it cannot be moved")
     index = model.site("goal").id
     was: np.ndarray = data.site_xpos[index]
     to = was if place is None else np.array([*place, was[2]])
-    body = int(model.site_bodyid[index])
+    body = int(model.body_rootid[model.site_bodyid[index]])
     if model.body_mocapid[body] >= 0:
-        _shift(spec, site.parent, data.xpos[body] + (to - was), data.xquat[body])
+        _shift(spec, _root(site.parent), data.xpos[body] + (to - was), data.xquat[body])
     else:
         quat = np.empty(4)
         mujoco.mju_mat2Quat(quat, data.site_xmat[index])
@@ -61,6 +57,13 @@ def _place(goal: Sequence[float]) -> list[float]:
         given = " ".join(str(goal).split())
         raise ConfigError(f"goal {given}: must be (x, y) in metres")
     return place.tolist()
+
+
+def _root(body: mujoco.MjsBody) -> mujoco.MjsBody:
+    """Return the body of the world that a body is on."""
+    while body.parent.name != "world":
+        body = body.parent
+    return body
 
 
 def _shift(spec: mujoco.MjSpec, body: mujoco.MjsBody, pos: np.ndarray, quat: np.ndarray) -> None:
@@ -86,6 +89,8 @@ def _replace(
 
 def add_obstacles(spec: mujoco.MjSpec, config: MovingObstacles) -> tuple[str, ...]:
     """Add moving cylinders to a room, and return the names of their bodies."""
+    look = spec.add_material(name=_free_name(spec, f"{MOVING}_look"), rgba=_LOOK)
+    look.specular = look.shininess = 0.1
     names: list[str] = []
     turn = config.direction / 2
     for number in range(config.count):
@@ -100,7 +105,7 @@ def add_obstacles(spec: mujoco.MjSpec, config: MovingObstacles) -> tuple[str, ..
             name=name,
             type=mujoco.mjtGeom.mjGEOM_CYLINDER,
             size=[config.radius, config.height / 2, 0.0],
-            rgba=_LOOK,
+            material=look.name,
             contype=1,
             conaffinity=1,
         )
@@ -109,7 +114,7 @@ def add_obstacles(spec: mujoco.MjSpec, config: MovingObstacles) -> tuple[str, ..
 
 
 def _free_name(spec: mujoco.MjSpec, wanted: str) -> str:
-    taken = {body.name for body in spec.bodies} | {geom.name for geom in spec.geoms}
+    taken = {each.name for each in (*spec.bodies, *spec.geoms, *spec.materials)}
     while wanted in taken:
         wanted += "_"
     return wanted

@@ -3,6 +3,7 @@
 import mujoco
 import numpy as np
 
+from nomad_mj.arenas import goal_site
 from nomad_mj.scene import Scene
 from nomad_mj.types import FloatArray, IntArray
 from nomad_mj.video.cameras import base_body
@@ -65,11 +66,10 @@ class Painter:
             radius = grow * scene.robot.layout.radius
             self._shade.disc(np.zeros(2), radius, _SHADE, INK, 0.11)
         self._drawn: dict[float, tuple[Trail, tuple[int, int], Sheet]] = {}
-        goal = scene.arena.goal
+        self._goal = goal_site(scene.model)
         self._goal_marks = Sheet()
-        self._goal_marks.dot(goal, 0.10, _GOAL, PAPER)
-        self._goal_marks.dot(goal, 0.05, _GOAL + 0.002, GREEN)
-        self._pole = np.array([[*goal, 0.0]]), np.array([[*goal, _POLE]])
+        self._goal_marks.dot(np.zeros(2), 0.10, _GOAL, PAPER)
+        self._goal_marks.dot(np.zeros(2), 0.05, _GOAL + 0.002, GREEN)
 
     def decorate(self, data: mujoco.MjData, marks: Marks, pane: Pane) -> None:
         """Add everything to a pane that shows the state `data`."""
@@ -87,9 +87,11 @@ class Painter:
         marks.add(now)
         if near:
             marks.add(self._shade, np.array([*head, 0.0]))
-        marks.add(self._goal_marks)
-        marks.lines(*self._pole, 2.0 * self._unit, _GREEN)
-        marks.ball(self._pole[1][0], 0.08, GREEN)
+        foot = np.array([*data.site_xpos[self._goal][:2], 0.0])
+        top = foot + np.array([0.0, 0.0, _POLE])
+        marks.add(self._goal_marks, foot)
+        marks.lines(foot[None], top[None], 2.0 * self._unit, _GREEN)
+        marks.ball(top, 0.08, GREEN)
         if self.ranges is not None:
             self._draw_rays(data, marks, self.ranges)
 

@@ -26,6 +26,7 @@ _EPS = 1e-9  # [s]
 class _State(NamedTuple):
     time: float
     qpos: FloatArray
+    mocap_pos: FloatArray
     ranges: FloatArray
 
 
@@ -175,14 +176,17 @@ class EpisodeRecorder:
             ranges = np.clip(physics.cone_ranges(), rays.minimum, rays.maximum)
         else:
             ranges = np.concatenate([step.observation[ring] for ring in self._rings])
-        return _State(float(physics.data.time), physics.data.qpos.copy(), ranges)
+        data = physics.data
+        return _State(float(data.time), data.qpos.copy(), data.mocap_pos.copy(), ranges)
 
     def _catch_up(self) -> _State:
         """Begin an episode if the simulation is not where it was seen last; return its state."""
         state, before = self._see(None), self._before
         if before is None or before.time != state.time:
             return self._begin(state)
-        return before if np.array_equal(before.qpos, state.qpos) else self._begin(state)
+        same = np.array_equal(before.qpos, state.qpos)
+        same &= np.array_equal(before.mocap_pos, state.mocap_pos)
+        return before if same else self._begin(state)
 
     def _begin(self, state: _State) -> _State:
         self._before = state
@@ -214,7 +218,8 @@ class EpisodeRecorder:
             share = (time - before.time) / (after.time - before.time)
             qpos = before.qpos.copy()
             mujoco.mj_integratePos(model, qpos, self._change, share)
-            self._studio.show(self._env.physics.data, qpos)
+            mocap_pos = (1 - share) * before.mocap_pos + share * after.mocap_pos
+            self._studio.show(self._env.physics.data, qpos, mocap_pos)
             # Readings glide too: their noise, anew at each step, would make the rays flicker.
             mixed = (1 - share) * before.ranges + share * after.ranges
             self._studio.painter.ranges = np.where(self._hit(before, after), mixed, after.ranges)

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 from typing_extensions import Self
 
+from nomad_mj.arenas import goal_site
 from nomad_mj.geometry import direction
 from nomad_mj.scene import Scene
 from nomad_mj.types import FloatArray
@@ -66,16 +67,20 @@ class Studio:
         self._bar = CaptionBar(self.layout.caption, self.layout.unit, speed)
         self._inset: Card | None = None
         self._base = base_body(scene.model)
+        self._goal = goal_site(scene.model)
         self._chase = ChaseCamera(scene)
         self._course = math.nan
         self._drive: FloatArray = np.zeros(2)
         self._cameras = {"chase": self._chase.camera}
         self._cameras |= {name: fixed_camera(scene, name) for name in ("top", "overview")}
 
-    def show(self, seen: Any, qpos: FloatArray | None = None) -> None:
-        """Take over a simulation's positions; `qpos` if given stands for its own."""
+    def show(
+        self, seen: Any, qpos: FloatArray | None = None, mocap_pos: FloatArray | None = None
+    ) -> None:
+        """Take over a simulation's positions; `qpos`, `mocap_pos` if given stand for its own."""
         self.data.qpos[:] = seen.qpos if qpos is None else qpos
-        self.data.mocap_pos[:], self.data.mocap_quat[:] = seen.mocap_pos, seen.mocap_quat
+        self.data.mocap_pos[:] = seen.mocap_pos if mocap_pos is None else mocap_pos
+        self.data.mocap_quat[:] = seen.mocap_quat
         mujoco.mj_kinematics(self._scene.model, self.data)
         mujoco.mj_comPos(self._scene.model, self.data)
         mujoco.mj_camlight(self._scene.model, self.data)
@@ -148,7 +153,7 @@ class Studio:
             Laid over everything.
         """
         if math.isnan(self._course):
-            self.look_along(float(direction(self._scene.arena.goal - self.place)))
+            self.look_along(float(direction(self.data.site_xpos[self._goal][:2] - self.place)))
         self._chase.follow(self.data, self._course, elapsed)
         frame = self._canvas.draw(
             self.data,

@@ -14,12 +14,21 @@ from nomad_mj.assets import list_rooms, models_dir
 from nomad_mj.types import FloatArray
 
 RADIUS, HEIGHT, CLEARANCE = 0.265, 0.9, 0.12
-ROOMS = ("clutter", "concave_room", "concave_room_deep", "corridor", "empty_room", "paper_room")
+ROOMS = (
+    "clutter",
+    "concave_room",
+    "concave_room_deep",
+    "corridor",
+    "empty_room",
+    "moving_room",
+    "paper_room",
+)
 SPEC_BOXES = {
     "paper_room": [[3.4, 4.4, 6.2, 5.6], [1.6, 6.8, 3.2, 8.2], [7, 2, 8.6, 3.4]],
     "concave_room": [[3.6, 5.2, 4, 6.4], [6, 5.2, 6.4, 6.4], [3.6, 6, 6.4, 6.4]],
     "concave_room_deep": [[3.6, 4.2, 4, 6.4], [6, 4.2, 6.4, 6.4], [3.6, 6, 6.4, 6.4]],
     "empty_room": [],
+    "moving_room": [[3.4, 4.4, 6.2, 5.6], [1.6, 6.8, 3.2, 8.2], [7, 2, 8.6, 3.4]],
 }
 
 
@@ -51,11 +60,14 @@ def test_walls_enclose_the_room(room: str) -> None:
 @pytest.mark.parametrize("room", ROOMS)
 def test_geoms_are_named_and_higher_than_the_sonars(room: str) -> None:
     model, _, plan = load(room)
-    assert len(plan.names) == model.ngeom
-    assert all(name.startswith(("wall_", "obstacle_")) for name in plan.names)
+    moving = model.body_mocapid[model.geom_bodyid] >= 0
+    assert len(plan.names) == model.ngeom - moving.sum()
+    names = [model.geom(i).name for i in range(model.ngeom)]
+    assert all(name.startswith(("wall_", "obstacle_")) for name in names)
     tops = model.geom_pos[:, 2] + model.geom_size[:, :].max(axis=1, where=[[0, 0, 1]], initial=0)
     cylinders = model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER
     tops[cylinders] = (model.geom_pos[:, 2] + model.geom_size[:, 1])[cylinders]
+    tops += model.body_pos[model.geom_bodyid, 2]
     assert tops.min() >= 0.9
 
 

@@ -1,0 +1,98 @@
+"""Movers in pictures: drawn where they are, and gliding in between."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nomad_mj
+from nomad_mj.video import EpisodeRecorder, snapshot
+from nomad_mj.video.studio import Studio
+
+pytestmark = pytest.mark.gl
+
+SMALL = (160, 120)
+LARGE = (480, 480)
+
+
+@pytest.fixture
+def env() -> Iterator[nomad_mj.PathFinding]:
+    env = nomad_mj.load(room="moving_room", task_kwargs={"random": 0})
+    env.reset(start=4)
+    yield env
+    env.close()
+
+
+def test_movers_glide_between_control_steps(
+    env: nomad_mj.PathFinding, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[list[float]] = []
+    known: list[list[float]] = []
+
+    def frame(studio: Studio, time: float, elapsed: float, title: Any = None) -> np.ndarray:
+        drawn.append([time, *studio.data.mocap_pos.ravel().tolist()])
+        return np.zeros((SMALL[1], SMALL[0], 3), dtype=np.uint8)
+
+    def places(_: Any = None) -> None:
+        movers = env.motor.task.movers
+        assert movers is not None
+        x, y = np.concatenate([movers.obstacles, movers.goal[None]]).T
+        height = env.physics.data.mocap_pos[:, 2]
+        known.append([env.physics.time(), *np.column_stack([x, y, height]).ravel().tolist()])
+
+    monkeypatch.setattr(Studio, "frame", frame)
+    places()
+    env.on_control_step = places
+    with EpisodeRecorder(env, tmp_path / "v.mp4", size=SMALL) as recorder:
+        recorder.annotate()
+        env.step((0.5, 0.0))
+    seen, true = np.array(drawn), np.array(known)
+    assert len(seen) > 20 and np.ptp(seen[:, 1:], axis=0).max() > 0.1
+    for column in range(1, seen.shape[1]):
+        expected = np.interp(seen[:, 0], true[:, 0], true[:, column])
+        np.testing.assert_allclose(seen[:, column], expected, atol=1e-9)
+
+
+def plum(picture: np.ndarray) -> np.ndarray:
+    """Return where the picture has the colour of moving obstacles."""
+    red, green, blue = np.moveaxis(picture.astype(int), -1, 0)
+    return (blue - green > 25) & (red - green > 5)
+
+
+def teal(picture: np.ndarray) -> np.ndarray:
+    """Return where it has that of the goal."""
+    red, green, blue = np.moveaxis(picture.astype(int), -1, 0)
+    return (green - red > 60) & (green - blue > 15)
+
+
+def test_a_picture_shows_them_where_they_are(env: nomad_mj.PathFinding) -> None:
+    fovy = 10.7 / 480  # [m] of a pixel
+    for _ in range(3):
+        picture = snapshot(env, "top", LARGE)
+        movers = env.motor.task.movers
+        assert movers is not None
+        row, column = np.nonzero(plum(picture))
+        x, y = 5 + (column - 239.5) * fovy, 5 - (row - 239.5) * fovy
+        off = np.hypot(*(np.stack([x, y], -1)[:, None] - movers.obstacles).T)
+        assert (off.min(axis=0) < 0.3).mean() > 0.98
+        assert all((off.argmin(axis=0) == i).sum() > 200 for i in range(4))
+        row, column = np.nonzero(teal(picture))
+        middle = 5 + (column.mean() - 239.5) * fovy, 5 - (row.mean() - 239.5) * fovy
+        np.testing.assert_allclose(middle, movers.goal, atol=0.05)
+        env.step((1.0, 0.0))
+
+
+def test_an_episode_that_differs_in_its_movers_only_begins_anew(
+    env: nomad_mj.PathFinding, tmp_path: Path
+) -> None:
+    options = {"moving_obstacles": nomad_mj.MovingObstacles()}
+    with nomad_mj.load(task_kwargs=options) as other:
+        other.reset(seed=0, start=4)
+        with EpisodeRecorder(other, tmp_path / "v.mp4", size=SMALL) as recorder:
+            recorder.start_episode()
+            other.reset(seed=1, start=4)
+            recorder.hold(0.1)
+            shown = recorder._studio.data.mocap_pos
+            np.testing.assert_array_equal(shown, other.physics.data.mocap_pos)
