@@ -18,6 +18,20 @@ ROOM = (
     ('size="0.4 0.45"', 'size="1.9 0.45"', "cannot reach the goal "),
     ("</worldbody>", "", "is not valid MJCF: "),
 )
+MOVING = (
+    (' mocap="true" pos="3 3', ' pos="3 3', 'cannot move: give it mocap="true"'),
+    (
+        '<site name="goal"/>',
+        '<site name="goal"/><geom name="flag" size="0.1"/>',
+        "moves with the goal, so nothing may run into it",
+    ),
+    ('pos="3 3 0.45"', 'pos="4.6 3 0.45"', "is outside the room, in something or nearer the goal"),
+    (
+        'pos="3 3 0.45" euler="0 0 -90">\n      <geom name="obstacle_post" type="cylinder" size="0.25 ',
+        'pos="2 2 0.45">\n      <geom name="obstacle_post" type="cylinder" size="1.9 ',
+        "no place found for moving obstacle ",
+    ),
+)
 ROBOT = (
     (
         '<velocity name="turret"',
@@ -50,10 +64,9 @@ ROBOT = (
 )
 
 
-def model(page: str) -> str:
-    found = re.search(r"```xml\n(.*?)```", (DOCS / page).read_text(), re.DOTALL)
-    assert found
-    return found[1]
+def model(page: str, number: int = 0) -> str:
+    found = re.findall(r"```xml\n(.*?)```", (DOCS / page).read_text(), re.DOTALL)
+    return found[number]
 
 
 def error_of(**files: Any) -> str:
@@ -77,6 +90,15 @@ def test_mistakes_bring_the_message_of_the_page(
     (tmp_path / "own.xml").write_text(text.replace(old, new))
     assert told in error_of(**{kind: tmp_path / "own.xml"})
     assert f"`{told}`" in (DOCS / page).read_text()
+
+
+@pytest.mark.parametrize(("old", "new", "told"), MOVING)
+def test_mistakes_with_what_moves_do_too(old: str, new: str, told: str, tmp_path: Path) -> None:
+    text = model("your-own-room.md", 1)
+    assert old in text
+    (tmp_path / "own.xml").write_text(text.replace(old, new))
+    assert told in error_of(room=tmp_path / "own.xml")
+    assert f"`{told}`" in (DOCS / "your-own-room.md").read_text()
 
 
 @pytest.mark.parametrize(

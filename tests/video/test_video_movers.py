@@ -9,6 +9,7 @@ import pytest
 
 import nomad_mj
 from nomad_mj.video import EpisodeRecorder, snapshot
+from nomad_mj.video.layout import make_layout
 from nomad_mj.video.studio import Studio
 
 pytestmark = pytest.mark.gl
@@ -68,19 +69,21 @@ def teal(picture: np.ndarray) -> np.ndarray:
 
 
 def test_a_picture_shows_them_where_they_are(env: nomad_mj.PathFinding) -> None:
-    fovy = 10.7 / 480  # [m] of a pixel
+    left, top, width, height = make_layout("top", LARGE).panes[0].box
+    pixel = 10.7 / height  # [m]
+    middle = np.array([left + width / 2 - 0.5, top + height / 2 - 0.5])
     for _ in range(3):
         picture = snapshot(env, "top", LARGE)
         movers = env.motor.task.movers
         assert movers is not None
         row, column = np.nonzero(plum(picture))
-        x, y = 5 + (column - 239.5) * fovy, 5 - (row - 239.5) * fovy
-        off = np.hypot(*(np.stack([x, y], -1)[:, None] - movers.obstacles).T)
+        seen = 5 + (np.stack([column, row], axis=-1) - middle) * (pixel, -pixel)
+        off = np.hypot(*(seen[:, None] - movers.obstacles).T)
         assert (off.min(axis=0) < 0.3).mean() > 0.98
         assert all((off.argmin(axis=0) == i).sum() > 200 for i in range(4))
         row, column = np.nonzero(teal(picture))
-        middle = 5 + (column.mean() - 239.5) * fovy, 5 - (row.mean() - 239.5) * fovy
-        np.testing.assert_allclose(middle, movers.goal, atol=0.05)
+        seen = 5 + (np.stack([column, row], axis=-1) - middle) * (pixel, -pixel)
+        np.testing.assert_allclose(seen.mean(axis=0), movers.goal, atol=0.05)
         env.step((1.0, 0.0))
 
 
