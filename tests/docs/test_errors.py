@@ -27,8 +27,8 @@ MOVING = (
     ),
     ('pos="3 3 0.45"', 'pos="4.6 3 0.45"', "is outside the room, in something or nearer the goal"),
     (
-        'pos="3 3 0.45" euler="0 0 -90">\n      <geom name="obstacle_post" type="cylinder" size="0.25 ',
-        'pos="2 2 0.45">\n      <geom name="obstacle_post" type="cylinder" size="1.9 ',
+        '3 3 0.45" euler="0 0 -90">\n      <geom name="obstacle_post" type="cylinder" size="0.25 ',
+        '2 2 0.45">\n      <geom name="obstacle_post" type="cylinder" size="1.9 ',
         "no place found for moving obstacle ",
     ),
 )

@@ -88,14 +88,20 @@ def test_a_picture_shows_them_where_they_are(env: nomad_mj.PathFinding) -> None:
 
 
 def test_an_episode_that_differs_in_its_movers_only_begins_anew(
-    env: nomad_mj.PathFinding, tmp_path: Path
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    drawn: list[np.ndarray] = []
+
+    def frame(studio: Studio, time: float, elapsed: float, title: Any = None) -> np.ndarray:
+        drawn.append(studio.data.mocap_pos.copy())
+        return np.zeros((SMALL[1], SMALL[0], 3), dtype=np.uint8)
+
+    monkeypatch.setattr(Studio, "frame", frame)
     options = {"moving_obstacles": nomad_mj.MovingObstacles()}
-    with nomad_mj.load(task_kwargs=options) as other:
-        other.reset(seed=0, start=4)
-        with EpisodeRecorder(other, tmp_path / "v.mp4", size=SMALL) as recorder:
-            recorder.start_episode()
-            other.reset(seed=1, start=4)
-            recorder.hold(0.1)
-            shown = recorder._studio.data.mocap_pos
-            np.testing.assert_array_equal(shown, other.physics.data.mocap_pos)
+    with nomad_mj.load(task_kwargs=options) as env:
+        with EpisodeRecorder(env, tmp_path / "v.mp4", size=SMALL) as recorder:
+            for seed in (0, 1):
+                env.reset(seed=seed, start=4)
+                recorder.hold(0.1)
+                np.testing.assert_array_equal(drawn[-1], env.physics.data.mocap_pos)
+    assert (drawn[0] != drawn[-1]).any()
