@@ -19,7 +19,7 @@ from nomad_agents.evaluation import (
 )
 from nomad_agents.reactive_planner import FAITHFUL
 
-from nomad_mj.envs import PathFinding
+from nomad_mj.envs import PathFinding, load
 from nomad_mj.errors import ConfigError, StartError
 from nomad_mj.types import FloatArray
 
@@ -207,3 +207,16 @@ def test_files_that_hold_no_starts(tmp_path: Path) -> None:
         path.write_text(text)
         with pytest.raises(StartError, match=r"holds no start; lines are x,y\[,heading\]$"):
             read_starts(path)
+
+
+def test_what_moves_is_evaluated_to_the_goals_first_place() -> None:
+    """Also in a room of whose goal and obstacles nothing stands still."""
+    with load(room="moving_room") as env:
+        starts = draw_starts(env, 3, 1)
+        trials = evaluate(env, Straight(env.scene.robot.layout, FAITHFUL), starts, 1, 20)
+        for trial in trials:
+            assert trial.shortest >= math.dist(trial.start[:2], env.scene.arena.goal) - 1e-9
+        told = summarise(env, trials)
+        assert 0 <= told["spl"] <= told["success_rate"] <= 1 and told["min_clearance_m"] > 0
+        again = evaluate(env, Straight(env.scene.robot.layout, FAITHFUL), starts, 1, 20)
+        assert [t.episode for t in again] == [t.episode for t in trials]

@@ -98,10 +98,12 @@ def test_an_episode_that_differs_in_its_movers_only_begins_anew(
 
     monkeypatch.setattr(Studio, "frame", frame)
     options = {"moving_obstacles": nomad_mj.MovingObstacles()}
-    with nomad_mj.load(task_kwargs=options) as env:
-        with EpisodeRecorder(env, tmp_path / "v.mp4", size=SMALL) as recorder:
-            for seed in (0, 1):
-                env.reset(seed=seed, start=4)
-                recorder.hold(0.1)
-                np.testing.assert_array_equal(drawn[-1], env.physics.data.mocap_pos)
+    with (
+        nomad_mj.load(task_kwargs=options) as env,
+        EpisodeRecorder(env, tmp_path / "v.mp4", size=SMALL) as recorder,
+    ):
+        for seed in (0, 1):
+            env.reset(seed=seed, start=4)
+            recorder.hold(0.1)
+            np.testing.assert_array_equal(drawn[-1], env.physics.data.mocap_pos)
     assert (drawn[0] != drawn[-1]).any()
