@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from rich.console import Console
 from rich.table import Table
 
@@ -14,7 +13,8 @@ from nomad_agents.cli.evaluate import format_metric, run_evaluation
 from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.cli.train import run_training
 from nomad_agents.evaluation import Trial, draw_starts, summarise
-from nomad_agents.experiments.figures import draw_actions, draw_paths, lattice, lattice_actions
+from nomad_agents.experiments.figures import Panel, draw_actions, draw_paths, lattice
+from nomad_agents.experiments.pictures import LATTICE, action_map, spread_out, way
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.recording import record
 from nomad_agents.registry import find_config, make_agent
@@ -45,7 +45,6 @@ UNSEEN_ROWS = {
     "spl": "SPL",
     "path_ratio_median": "path / shortest, median",
 }
-_LATTICE = 0.5  # [m] between the places of Fig 7
 
 
 @dataclass(frozen=True)
@@ -63,7 +62,7 @@ class Demo(TaskOptions):
     speed: float = 4.0
     """Video time runs so many times faster than simulated time."""
     out: str = "renders"
-    """Folder for ROOM.npz, ROOM.mp4, fig6.png and fig7.png."""
+    """Folder for ROOM.npz, ROOM.mp4, and fig6 and fig7 as .png and .pdf."""
     json: bool = False
     """Print one line of JSON last on standard output."""
 
@@ -105,13 +104,12 @@ class Demo(TaskOptions):
     def _draw(self, env: PathFinding, agent: Agent, folder: Path, screen: Console) -> list[Trial]:
         """Write Figs 6 and 7; return the episodes of Fig 6."""
         scene = env.scene
-        starts = scene.arena.starts[_spread(scene.arena.starts[:, :2], 12)]
+        starts = scene.arena.starts[spread_out(scene.arena.starts[:, :2], 12)]
         trials = run_evaluation(env, agent, starts, self.seed, 100, screen)
-        draw_paths(scene, trials, folder / "fig6.png", "Paths from twelve starts after learning")
-        actions = lattice_actions(env, agent, lattice(scene, _LATTICE), self.seed)
-        draw_actions(
-            scene, actions, folder / "fig7.png", "The learnt action at a lattice of places"
-        )
+        ways = [way(trial) for trial in trials]
+        draw_paths([Panel("Paths after learning", scene, ways)], folder / "fig6")
+        actions = action_map(env, agent, lattice(scene, LATTICE), self.seed)
+        draw_actions([Panel("The learnt action at every place", scene, actions)], folder / "fig7")
         return trials
 
     def _record(
@@ -126,15 +124,6 @@ class Demo(TaskOptions):
             screen.print(f"no video: {error}", soft_wrap=True)
             return False
         return True
-
-
-def _spread(places: np.ndarray, count: int) -> list[int]:
-    """Return the indices of `count` of the places (n, 2) that lie far from each other."""
-    chosen = [0]
-    while len(chosen) < min(count, len(places)):
-        off = np.hypot(*(places[:, None] - places[chosen]).transpose(2, 0, 1)).min(axis=1)
-        chosen.append(int(np.argmax(off)))
-    return chosen
 
 
 def _table(
