@@ -17,6 +17,7 @@ from nomad_mj import (
     MovingObstacles,
     PathFinding,
     RangeNoise,
+    list_robots,
     load,
 )
 from nomad_mj.errors import ConfigError, NomadError, StartError
@@ -156,9 +157,10 @@ def test_obstacles_never_come_near_the_robot_of_themselves() -> None:
 CROWD = MovingObstacles(count=16, speed=1.0)
 
 
-def test_the_robot_can_bump_into_an_obstacle_which_is_not_moved_by_it() -> None:
+@pytest.mark.parametrize("robot", list_robots())
+def test_the_robot_can_bump_into_an_obstacle_which_is_not_moved_by_it(robot: str) -> None:
     still = MovingObstacles(count=1, speed=1e-9)
-    env = motor("empty_room", moving_obstacles=still)
+    env = load("motor", "empty_room", robot, {"moving_obstacles": still, "ends_at_goal": False})
     env.reset(seed=0, start=(5.0, 5.0))
     (place,) = drawn_obstacles(env)
     heading = math.atan2(place[1] - 5, place[0] - 5)

@@ -107,6 +107,27 @@ def test_options_say_more_than_the_file(own_room: OwnRoom, wrapped: bool, nested
     env.close()
 
 
+@pytest.mark.parametrize("post", ["", '<geom name="obstacle_0" size="0.5" pos="0 2 0"/>'])
+def test_a_room_without_walls_has_movers_too(tmp_path: Path, post: str) -> None:
+    sites = '<site name="goal" pos="3 3 0"/><site name="start_0" pos="-3 -3 0"/>'
+    (tmp_path / "open.xml").write_text(f"<mujoco><worldbody>{sites}{post}</worldbody></mujoco>")
+    env = drive(
+        tmp_path / "open.xml",
+        moving_goal=MovingGoal(speed=3.0),
+        moving_obstacles=MovingObstacles(count=2, speed=3.0),
+    )
+    movers = env.task.movers
+    assert movers is not None
+    for _ in range(2):
+        env.reset()
+        for _ in range(300):
+            env.step(np.zeros(3))
+            assert (
+                np.abs([*movers.obstacles, movers.goal]).max() < 13.1
+            )  # 10 m around what there is
+    env.close()
+
+
 def test_a_name_that_is_taken_is_no_trouble(own_room: OwnRoom) -> None:
     env = drive(own_room(body(name="moving_0")), moving_obstacles=MovingObstacles(count=2))
     names = [each.name for each in env.task.scene.moving.obstacles]
