@@ -36,7 +36,7 @@ def test_parameters_are_those_of_table_1() -> None:
 
 
 def test_tuned_keeps_the_equations_but_other_numbers() -> None:
-    assert (TUNED.k_ind, TUNED.no_match, TUNED.situation.circular) == (0.02, "nearest", True)
+    assert (TUNED.k_ind, TUNED.no_match, TUNED.situation.circular) == (0.02, "plan", True)
     assert TUNED.planner == FAITHFUL.planner and TUNED.action == FAITHFUL.action
 
 

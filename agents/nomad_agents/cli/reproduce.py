@@ -1,6 +1,7 @@
 """``nomad-mj reproduce``."""
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated
 
 import tyro

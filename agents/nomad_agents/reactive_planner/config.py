@@ -95,7 +95,6 @@ FAITHFUL = ReactivePlannerConfig()
 TUNED = replace(
     FAITHFUL,
     k_ind=0.02,
-    no_match="nearest",
     situation=replace(FAITHFUL.situation, circular=True),
 )
 CONFIGS: dict[str, ReactivePlannerConfig] = {"faithful": FAITHFUL, "tuned": TUNED}
