@@ -26,6 +26,7 @@ _PANEL = 3.1  # [in] wide
 _LAG = 0.5  # [s] over which a direction is taken
 _STILL = 0.02  # [m] in that time
 _POINTER = 0.55  # [m]
+_LONG = 20.0  # [s] from which on no tenths are told
 
 
 def draw_film(scene: Scene, film: Film, path: Path, title: str) -> None:
@@ -36,7 +37,7 @@ def draw_film(scene: Scene, film: Film, path: Path, title: str) -> None:
     scene : Scene
         The room and the robot.
     film : Film
-        What moved; the trails lead up to each panel's time.
+        What moved; the trails lead up to each panel's time, faint before the panel before it.
     path : Path
         Without a suffix: a PDF and a PNG are written.
     title : str
@@ -47,22 +48,24 @@ def draw_film(scene: Scene, film: Film, path: Path, title: str) -> None:
     frames = [int(np.argmin(np.abs(times - time))) for time in shown]
     height = 2 * (room_height(scene, _PANEL) + 0.25) + 0.7
     with sheet(path, _COLUMNS * _PANEL, height) as figure:
+        figure.set_layout_engine("constrained", h_pad=0.09)
         panels = figure.subplots(_PANELS // _COLUMNS, _COLUMNS).ravel().tolist()
-        for axes, frame in zip(panels, frames, strict=True):
+        digits = 0 if times[-1] > _LONG else 1
+        for axes, since, frame in zip(panels, [0, *frames], frames, strict=False):
             draw_plan(axes, scene)
             axes.set(xticks=[], yticks=[])
-            axes.set_title(f"{times[frame]:.1f} s", fontsize=12)
-            _draw_frame(axes, film, frame, scene.robot.layout.radius)
+            axes.set_title(f"{times[frame]:.{digits}f} s", fontsize=12)
+            _draw_frame(axes, film, since, frame, scene.robot.layout.radius)
         _draw_scale(panels[0], scene)
         figure.suptitle(title, x=0.006, ha="left", fontsize=13)
         legend_below(figure, _signs(film))
 
 
-def _draw_frame(axes: Axes, film: Film, frame: int, radius: float) -> None:
+def _draw_frame(axes: Axes, film: Film, since: int, frame: int, radius: float) -> None:
     robot = np.array(film["robot"])[: frame + 1]
     goal = np.array(film["goal"])[: frame + 1]
-    axes.plot(*robot[:, :2].T, color=BLUE, lw=1.8, zorder=4)
-    axes.plot(*goal.T, color=GOAL, lw=1.8, zorder=4)
+    _draw_trail(axes, robot[:, :2], since, BLUE)
+    _draw_trail(axes, goal, since, GOAL)
     draw_goal(axes, goal[-1])
     draw_robot(axes, robot[-1, :2].tolist(), radius, BLUE, float(robot[-1, 2]))
     times = np.array(film["times"])
@@ -71,18 +74,23 @@ def _draw_frame(axes: Axes, film: Film, frame: int, radius: float) -> None:
     before, after = np.clip(np.searchsorted(times, now), 0, last).tolist()
     for number in range(len(film["obstacles"][frame])):
         track = np.array([places[number] for places in film["obstacles"]])
-        _draw_obstacle(axes, track[: frame + 1], track[after] - track[before], film["radius"])
+        _draw_trail(axes, track[: frame + 1], since, ORANGE)
+        _draw_obstacle(axes, track[frame], track[after] - track[before], film["radius"])
 
 
-def _draw_obstacle(axes: Axes, track: FloatArray, step: FloatArray, radius: float) -> None:
-    """Draw a disc with its trail (n, 2), and an arrow to where it has been heading."""
-    axes.plot(*track.T, color=ORANGE, lw=1.2, alpha=0.8, zorder=3)
-    axes.add_patch(
-        Circle(tuple(track[-1].tolist()), radius, facecolor=ORANGE, edgecolor="none", zorder=5)
-    )
+def _draw_trail(axes: Axes, track: FloatArray, since: int, colour: str) -> None:
+    """Draw where something has been (n, 2), faint before the frame `since`."""
+    axes.plot(*track[: since + 1].T, color=colour, lw=1.6, alpha=0.3, zorder=3)
+    axes.plot(*track[since:].T, color=colour, lw=1.8, zorder=4)
+
+
+def _draw_obstacle(axes: Axes, place: FloatArray, step: FloatArray, radius: float) -> None:
+    """Draw a disc, and an arrow to where it has been heading."""
+    x, y = place.tolist()
+    axes.add_patch(Circle((x, y), radius, facecolor=ORANGE, edgecolor="none", zorder=5))
     length = float(np.hypot(*step))
     if length > _STILL:
-        rim = track[-1] + step / length * radius
+        rim = place + step / length * radius
         tip = rim + step / length * _POINTER
         axes.annotate(
             "",
@@ -105,6 +113,6 @@ def _signs(film: Film) -> Sequence[Line2D]:
     signs = [robot_sign("robot and its way"), goal_sign()]
     signs[0].set(color=BLUE, markeredgecolor=BLUE, linestyle="-", linewidth=1.8)
     if film["obstacles"] and film["obstacles"][0]:
-        obstacle = Line2D([], [], marker="o", color=ORANGE, lw=1.2, ms=9, label="moving obstacle")
+        obstacle = Line2D([], [], marker="o", color=ORANGE, lw=1.8, ms=9, label="moving obstacle")
         signs.append(obstacle)
     return signs

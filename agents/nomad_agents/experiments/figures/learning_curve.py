@@ -69,7 +69,11 @@ def draw_learning(
         panels[-1].set_xlim(left=0)
         panels[-1].set_xlabel("reactions while learning")
         figure.align_ylabels(panels)
-        legend_below(figure, _signs(list(groups), bool(paper)), 3 if len(groups) < 2 else 2)
+        legend_below(
+            figure,
+            _signs({name: len(curves) for name, curves in groups.items()}, bool(paper)),
+            3 if len(groups) < 2 else 2,
+        )
 
 
 def _points(curve: Curve, key: str) -> FloatArray:
@@ -101,11 +105,12 @@ def _median(curves: Sequence[FloatArray]) -> FloatArray:
     return np.array([reactions, np.median(values, axis=0)])
 
 
-def _signs(names: Sequence[str], paper: bool) -> list[Line2D]:
+def _signs(groups: Mapping[str, int], paper: bool) -> list[Line2D]:
     signs: list[Line2D] = []
-    for colour, name in zip(_COLOURS, names, strict=False):
+    for colour, (name, runs) in zip(_COLOURS, groups.items(), strict=False):
         of = f"{name}: " if name else ""
-        signs.append(Line2D([], [], color=colour, lw=2.6, label=f"{of}median"))
+        if runs > 1:
+            signs.append(Line2D([], [], color=colour, lw=2.6, label=f"{of}median"))
         signs.append(
             Line2D([], [], color=colour, marker="o", ms=3, lw=0.9, alpha=0.6, label=f"{of}a run")
         )

@@ -2,8 +2,6 @@
 
 from typing import Any
 
-import numpy as np
-
 from nomad_agents.experiments.experiment import LEARNER, PLANNER
 from nomad_agents.experiments.figures.actions import draw_actions
 from nomad_agents.experiments.figures.categories import draw_categories
@@ -55,7 +53,12 @@ def compare_planner(material: Material) -> list[Illustration]:
     """Draw the learnt actions, what the planner does instead, and which category acts where."""
     titles = {LEARNER: "Learnt", PLANNER: "Planner at every decision"}
     held = holding(material.results, "actions", tuple(titles))
-    panels = {key[1]: make_panel(result, "actions", titles[key[1]]) for key, result in held.items()}
+    results = {agent: result for (_, agent), result in held.items()}
+    panels = {
+        agent: make_panel(results[agent], "actions", title)
+        for agent, title in titles.items()
+        if agent in results
+    }
     drawn: list[Illustration] = []
     if panels:
         path = material.path("actions")
@@ -72,14 +75,15 @@ def compare_planner(material: Material) -> list[Illustration]:
 
 
 def films(material: Material) -> list[Illustration]:
-    """Draw the same episode in each case: the one that lasts longest wherever it is shortest."""
+    """Draw the same episode in each case, one that is neither long nor short among them."""
     held = holding(material.results, "films")
     films = {key[0]: result.pictures["films"] for key, result in held.items()}
     count = min(map(len, films.values()), default=0)
     lasts = [min(max(f[n]["times"], default=0.0) for f in films.values()) for n in range(count)]
-    if not lasts or max(lasts) == 0.0:
+    there = sorted((n for n in range(count) if lasts[n] > 0), key=lasts.__getitem__)
+    if not there:
         return []
-    number = int(np.argmax(lasts))
+    number = there[len(there) // 2]
     drawn: list[Illustration] = []
     for (case, _), result in held.items():
         path = material.path("film" + (f"_{case.replace(' ', '_')}" if case else ""))
