@@ -32,7 +32,7 @@ class Planner(Agent):
         self.config = config
 
     def act(self, percept: Percept, explore: np.random.Generator | None) -> Decision:
-        """Return the best of the planner's 81 actions."""
+        """Return the best of the planner's 80 actions."""
         config = self.config
         best = plan(
             percept, self.layout.radius, config.situation.grid, config.action, config.planner

@@ -15,7 +15,7 @@ LIMITS = {
     "control_step_ratio": (1.25, "motor control step / bare mj_step loop, same model and rays"),
     "training_ratio": (1.6, "training / the same number of control steps in the bare loop"),
     "reaction_us": (300.0, "one reaction, perception to action, 500 exemplars, us"),
-    "planning_ms": (3.0, "one planning, 81 actions, ms"),
+    "planning_ms": (3.0, "one planning, 80 actions, ms"),
     "frame_ratio": (1.4, "recorded frame 640 x 480 / bare mujoco.Renderer frame"),
 }
 _FRAMES = 60

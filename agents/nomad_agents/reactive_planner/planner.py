@@ -12,12 +12,15 @@ from nomad_mj.types import FloatArray
 
 _AT_GOAL = 1e-9  # [m]
 _STEPS = np.linspace(-1.0, 1.0, 9)
-ACTIONS: FloatArray = np.stack(np.meshgrid(_STEPS, _STEPS, indexing="ij"), axis=-1).reshape(-1, 2)
+_ALL: FloatArray = np.stack(np.meshgrid(_STEPS, _STEPS, indexing="ij"), axis=-1).reshape(-1, 2)
+# Without the null action: to stand still promises what standing here does, so the prediction comes
+# true for ever and nothing is learnt.
+ACTIONS: FloatArray = _ALL[_ALL.any(axis=1)]
 ACTIONS.setflags(write=False)  # plans are rows of it
 
 
 class Plan(NamedTuple):
-    """The best of the 81 actions, (2,), and the cumulative reinforcement it promises."""
+    """The best of the 80 actions, (2,), and the cumulative reinforcement it promises."""
 
     action: FloatArray
     value: float
@@ -91,7 +94,7 @@ def path_clearance(
 def plan(
     percept: Percept, radius: float, grid: GridSpec, action: ActionSpec, config: PlannerConfig
 ) -> Plan:
-    """Return the best of the 81 actions.
+    """Return the best of the 80 actions.
 
     Actions that the grid shows to run into something are left out: their cost (at most 0.5) is
     less than what a metre costs, so that a literal reading of the paper drives into walls. Where
