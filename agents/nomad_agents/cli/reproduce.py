@@ -33,7 +33,7 @@ class Reproduce:
     experiments: Annotated[tuple[str, ...], tyro.conf.Positional] = (ALL,)
     """Which, one or several."""
     seeds: int = 20
-    """Runs, with the seeds 0, 1, ...; at most 5 of each baseline, which learns nothing."""
+    """Runs, with the seeds 0, 1, ...; at most 3 of each baseline, which learns nothing."""
     config: str = "faithful"
     """Parameters: faithful (the paper's) or tuned (better ones found since)."""
     room: str = DEFAULT_ROOM

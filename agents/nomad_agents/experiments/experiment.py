@@ -17,7 +17,7 @@ from nomad_mj.tasks import Start
 from nomad_mj.types import FloatArray
 
 LEARNER, STRAIGHT, PLANNER = ReactivePlanner.name, Straight.name, Planner.name
-BASELINE_SEEDS = 5  # they learn nothing: only the noise of their sensors differs between runs
+BASELINE_SEEDS = 3  # they learn nothing: only the noise of their sensors differs between runs
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from nomad_agents.experiments.experiment import (
     column,
 )
 from nomad_agents.experiments.learnt import keep_agent, kept_agent, learn
-from nomad_agents.experiments.measures import assess, episode_rows
+from nomad_agents.experiments.measures import FEW_STARTS, assess, episode_rows
 from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.registry import find_config, make_agent
@@ -83,7 +83,7 @@ class Noise(Experiment):
                     keep_agent(run, folder, env, agent)
             else:
                 agent = make_agent(run.agent, layout, config)
-            row, trials = assess(env, agent, run.seed)
+            row, trials = assess(env, agent, run.seed, FEW_STARTS)
             result.row |= row
             result.episodes = episode_rows(trials)
         return result
