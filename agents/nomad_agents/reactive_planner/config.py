@@ -23,8 +23,8 @@ class PlannerConfig:
     occupied : float
         Above this probability a cell bars the way; those that no cone sees do not.
     margin : float
-        What the grid shows can be so much nearer [m]: half a cell, and the noise of 15 % at the
-        end of the longest move.
+        What the grid shows can be so much nearer [m]: a cell, for its size and for the noise.
+        With more the robot dithers at corners and is slow to learn the way out of a niche.
     """
 
     k_length: float = 0.75
@@ -32,7 +32,7 @@ class PlannerConfig:
     k_clear: float = 0.1
     k_alpha: float = math.radians(45)
     occupied: float = 0.5
-    margin: float = 0.25
+    margin: float = 0.2
 
 
 @dataclass(frozen=True)
