@@ -11,7 +11,7 @@ from nomad_agents.reactive_planner import FAITHFUL, ReactivePlanner
 from nomad_agents.training import Training, TrainingConfig, stream, train, training_report
 
 from nomad_mj.envs import PathFinding
-from nomad_mj.errors import ConfigError
+from nomad_mj.errors import ConfigError, StartError
 
 Learnt = tuple[ReactivePlanner, Training]
 
@@ -164,9 +164,27 @@ def test_training_gives_up_after_so_many_decisions(env: PathFinding) -> None:
         {"test_decisions": -3},
     ],
 )
-def test_senseless_limits_are_refused(wrong: dict[str, int]) -> None:
+def test_senseless_limits_are_refused(wrong: dict[str, Any]) -> None:
     with pytest.raises(ConfigError, match=f"^{next(iter(wrong))} -?[0-9]+: must be [01]"):
         TrainingConfig(**wrong)
+
+
+def test_some_of_the_starts_are_trained_on_alone(env: PathFinding) -> None:
+    agent = ReactivePlanner(env.scene.robot.layout, FAITHFUL)
+    begun: list[list[float]] = []
+    env.on_control_step = lambda _: begun.append([*env.motor.task.start_pose[:2]])
+    try:
+        training = train(env, agent, TrainingConfig(starts=(2,)), Training())
+    finally:
+        env.on_control_step = None
+    assert training.done and training.tested == 1
+    assert np.unique(begun, axis=0).tolist() == [env.scene.arena.starts[2, :2].tolist()]
+
+
+def test_a_start_that_there_is_not_is_refused(env: PathFinding) -> None:
+    agent = ReactivePlanner(env.scene.robot.layout, FAITHFUL)
+    with pytest.raises(StartError, match=r"^start 3: the room's are numbered 0 to 2$"):
+        train(env, agent, TrainingConfig(starts=(0, 3)), Training())
 
 
 def test_streams_differ_by_seed_and_by_key() -> None:

@@ -1,6 +1,6 @@
 """Do a study: the runs of some experiments, trained agents first, in one pool of processes."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from nomad_agents.experiments.experiment import Experiment, Study
@@ -50,19 +50,27 @@ def reproduce(
         Called once for each run, when its result is there.
     """
     do_runs(trainings(experiments, study), work, folder, jobs, after_run)
-    runs = [run for each in experiments for run in each.runs(study)]
-    return _by_name(experiments, do_runs(runs, work, folder, jobs, after_run))
+    # Seed by seed: whoever stops early has all experiments, over fewer seeds.
+    runs = sorted(_runs(experiments, study), key=lambda run: run.seed)
+    done = do_runs(runs, work, folder, jobs, after_run)
+    return _by_name(experiments, study, {result.run: result for result in done})
 
 
 def on_file(experiments: Sequence[Experiment], study: Study, folder: Path) -> Results:
     """Return the results that are on file, and do nothing."""
-    runs = [run for each in experiments for run in each.runs(study)]
-    held = [stored_result(run, folder) for run in runs]
-    return _by_name(experiments, [result for result in held if result is not None])
+    held = {run: stored_result(run, folder) for run in _runs(experiments, study)}
+    return _by_name(experiments, study, held)
 
 
-def _by_name(experiments: Sequence[Experiment], results: Sequence[Result]) -> Results:
+def _runs(experiments: Sequence[Experiment], study: Study) -> list[Run]:
+    return [run for each in experiments for run in each.runs(study)]
+
+
+def _by_name(
+    experiments: Sequence[Experiment], study: Study, results: Mapping[Run, Result | None]
+) -> Results:
+    """Return the results that there are, in the order of the experiments' runs."""
     return {
-        each.name: [result for result in results if result.run.experiment == each.name]
+        each.name: [held for run in each.runs(study) if (held := results[run]) is not None]
         for each in experiments
     }

@@ -5,9 +5,11 @@ A run that is on file is not done again: what was killed goes on where it was, t
 
 import json
 import multiprocessing
+import os
 import platform
 import re
 import signal
+import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -122,9 +124,17 @@ def _store(result: Result, folder: Path) -> None:
     write_atomically(folder / result.run.file_name, lambda file: file.write(text))
 
 
-def _ignore_interrupts() -> None:
-    """Leave Ctrl-C to the process that holds the pool: it stops the others."""
+def _obey() -> None:
+    """Leave Ctrl-C to the process that holds the pool; go when it goes, even if it was killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_follow_parent, daemon=True).start()
+
+
+def _follow_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)  # files are written whole or not at all: nothing is lost but this run
 
 
 def _timed(work: Callable[[Run, Path], Result], run: Run, folder: Path) -> Result:
@@ -174,9 +184,7 @@ def do_runs(
     if missing:
         # Spawned, not forked: a process starts without what this one has done so far.
         context = multiprocessing.get_context("spawn")
-        pool = ProcessPoolExecutor(
-            min(jobs, len(missing)), mp_context=context, initializer=_ignore_interrupts
-        )
+        pool = ProcessPoolExecutor(min(jobs, len(missing)), mp_context=context, initializer=_obey)
         try:
             waiting = [pool.submit(_timed, work, run, folder) for run in missing]
             for future in as_completed(waiting):

@@ -50,12 +50,12 @@ class Timing(Experiment):
     def work(self, run: Run, folder: Path) -> Result:
         """Measure; times are this machine's, and differ from run to run."""
         result = Result(run, {})
-        reactions: list[tuple[int, float]] = []
-        plannings: list[tuple[int, float]] = []
+        reactions: list[list[float]] = []
+        plannings: list[list[float]] = []
         for count in EXEMPLARS:
             reaction, planning = decision_times(run.room, exemplars=count)
-            reactions.append((count, reaction))
-            plannings.append((count, planning))
+            reactions.append([count, reaction])
+            plannings.append([count, planning])
             result.row[f"reaction_{count}_ms"] = 1000 * reaction
             result.row[f"planning_{count}_ms"] = 1000 * planning
         result.pictures = {"reactions": reactions, "plannings": plannings}

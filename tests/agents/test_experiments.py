@@ -1,0 +1,124 @@
+"""What every experiment must keep: rows that JSON holds, numbers for its table, a verdict."""
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from nomad_agents.evaluation import draw_starts
+from nomad_agents.experiments import measures
+from nomad_agents.experiments.experiment import LEARNER, PLANNER, Experiment, Study, Verdict
+from nomad_agents.experiments.learnt import train_room, training_run
+from nomad_agents.experiments.paper import EXPERIMENTS, concave, moving, places
+from nomad_agents.experiments.reproduction import count_runs, trainings
+from nomad_agents.experiments.runs import Result, Run, do_runs
+
+from nomad_mj.envs import PathFinding
+from nomad_mj.types import FloatArray
+
+STUDY = Study("tuned", "paper_room", "nomad200", 3)
+each_experiment = pytest.mark.parametrize("experiment", EXPERIMENTS.values(), ids=EXPERIMENTS)
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory: pytest.TempPathFactory, small_room: Path) -> tuple[Study, Path]:
+    """Return a study in the small room, and the folder of an agent that has learnt it."""
+    folder = tmp_path_factory.mktemp("runs")
+    study = Study("tuned", str(small_room), "nomad200", 1)
+    run = Run("fig6", "", LEARNER, study.config, study.room, study.robot, 0)
+    do_runs([training_run(run)], train_room, folder, 1, lambda _: None)
+    return study, folder
+
+
+@pytest.fixture
+def small(monkeypatch: pytest.MonkeyPatch, small_room: Path) -> None:
+    """Let all experiments make do with the small room, and with four unseen starts."""
+    monkeypatch.setattr(places, "PLACES", {"elsewhere": places.Place(goal=(-2.0, 3.0))})
+    monkeypatch.setattr(concave, "ROOM", str(small_room))
+    monkeypatch.setattr(moving, "_FILMS", 1)
+
+    def few(env: PathFinding, count: int, seed: int) -> FloatArray:
+        return draw_starts(env, min(count, 4), seed)
+
+    monkeypatch.setattr(measures, "draw_starts", few)
+
+
+@each_experiment
+def test_every_experiment_says_what_it_is(experiment: Experiment) -> None:
+    assert experiment.title and experiment.claim.endswith(".") and experiment.source
+    assert experiment.table
+
+
+@each_experiment
+def test_runs_are_all_different_and_have_files_of_their_own(experiment: Experiment) -> None:
+    runs = experiment.runs(STUDY)
+    assert len({run.file_name for run in runs}) == len(runs) == len(set(runs))
+    assert {run.experiment for run in runs} == {experiment.name}
+    assert {run.config for run in runs} == {"tuned"}
+    assert {run.case for run in runs} >= {row.case for row in experiment.table} - {""}
+
+
+def test_a_study_trains_an_agent_a_seed_once_for_all_experiments() -> None:
+    experiments = list(EXPERIMENTS.values())
+    assert [run.seed for run in trainings(experiments, STUDY)] == [0, 1, 2]
+    total = sum(len(each.runs(STUDY)) for each in experiments)
+    assert count_runs(experiments, STUDY) == total + 3
+
+
+@each_experiment
+def test_a_run_gives_every_number_of_the_table(
+    experiment: Experiment, trained: tuple[Study, Path], small: None
+) -> None:
+    study, folder = trained
+    run = next(run for run in experiment.runs(study) if run.agent == LEARNER)
+    result = experiment.work(run, folder)
+    for part in (result.row, result.episodes, result.curve, result.pictures):
+        assert json.loads(json.dumps(part)) == part or any_nan(part)
+    rows = [row for row in experiment.table if row.case in ("", run.case)]
+    assert {row.key for row in rows} <= set(result.row)
+
+
+@pytest.mark.parametrize("name", ["fig7", "fig12", "fig14"])
+def test_the_same_run_gives_the_same_bits(
+    name: str, trained: tuple[Study, Path], small: None
+) -> None:
+    study, folder = trained
+    experiment = EXPERIMENTS[name]
+    run = experiment.runs(study)[0]
+    first, second = (json.dumps(vars_of(experiment.work(run, folder))) for _ in range(2))
+    assert first == second
+
+
+def test_learning_on_changes_no_agent_on_file(trained: tuple[Study, Path], small: None) -> None:
+    study, folder = trained
+    experiment = EXPERIMENTS["fig12"]
+    off, on = (
+        next(r for r in experiment.runs(study) if r.agent == LEARNER and r.case == case)
+        for case in ("learning off", "learning on")
+    )
+    before = json.dumps(vars_of(experiment.work(off, folder)))
+    learning = json.dumps(vars_of(experiment.work(on, folder)))
+    assert json.dumps(vars_of(experiment.work(off, folder))) == before
+    assert learning.replace("learning on", "learning off") != before
+
+
+def test_a_verdict_follows_the_numbers() -> None:
+    def verdict(reactions: int, reached: float) -> Verdict:
+        row = {"learn_solved_all": True, "learn_reactions": reactions, "success_rate": reached}
+        run = Run("fig6", "", LEARNER, "faithful", "paper_room", "nomad200", 0)
+        return EXPERIMENTS["fig6"].judge([Result(run, row), other])
+
+    other = Result(Run("fig6", "", PLANNER, "faithful", "paper_room", "nomad200", 0), {})
+    assert verdict(700, 1.0).holds == "holds"
+    assert verdict(700, 0.9).holds == "holds in part"
+    assert verdict(2000, 1.0).holds == "holds in part"
+
+
+def vars_of(result: Result) -> dict[str, object]:
+    """Return a result without what differs between machines."""
+    return {key: str(value) for key, value in vars(result).items() if key != "machine"}
+
+
+def any_nan(part: object) -> bool:
+    """Whether a NaN, which is unlike itself, is among the numbers."""
+    return math.nan.__repr__() in repr(part)
