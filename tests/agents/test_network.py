@@ -37,7 +37,8 @@ def test_parameters_are_those_of_table_1() -> None:
 
 def test_tuned_keeps_the_equations_but_other_numbers() -> None:
     assert (TUNED.k_ind, TUNED.no_match, TUNED.situation.circular) == (0.02, "plan", True)
-    assert TUNED.planner == FAITHFUL.planner and TUNED.action == FAITHFUL.action
+    assert (TUNED.planner.margin, FAITHFUL.planner.margin) == (0.25, 0.15)
+    assert TUNED.action == FAITHFUL.action
 
 
 def test_nothing_is_known_at_first() -> None:

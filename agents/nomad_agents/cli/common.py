@@ -11,8 +11,6 @@ from typing import Any, cast
 
 from rich.console import Console
 
-import nomad_mj
-from nomad_mj.envs import PathFinding
 from nomad_mj.errors import OutputError
 
 SUFFIXES = {".npz", ".mp4", ".csv", ".html"}
@@ -21,16 +19,6 @@ SUFFIXES = {".npz", ".mp4", ".csv", ".html"}
 def console(*, json_wanted: bool) -> Console:
     """Return where people read: standard error if standard output is for a program."""
     return Console(stderr=json_wanted, highlight=False)
-
-
-@contextmanager
-def path_finding(room: str, robot: str, **task: Any) -> Generator[PathFinding, None, None]:
-    """Load the path-finding environment and close it in the end."""
-    env = nomad_mj.load("path_finding", room=room, robot=robot, task_kwargs=task)
-    try:
-        yield env
-    finally:
-        env.close()
 
 
 def print_json(values: Mapping[str, Any]) -> None:

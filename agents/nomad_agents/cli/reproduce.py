@@ -7,7 +7,7 @@ from typing import Annotated
 import tyro
 from rich.console import Console
 
-from nomad_agents.cli.common import console, interruptible, output_file, path_finding, print_json
+from nomad_agents.cli.common import console, interruptible, output_file, print_json
 from nomad_agents.cli.progress import run_progress
 from nomad_agents.experiments.experiment import Experiment, Study
 from nomad_agents.experiments.paper import EXPERIMENTS, EXTRA
@@ -18,6 +18,7 @@ from nomad_agents.experiments.tables import as_rich
 from nomad_agents.registry import find_config
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
 from nomad_mj.errors import ConfigError, UnknownNameError
+from nomad_mj.scene import build_scene
 
 ALL = "all"
 
@@ -57,8 +58,7 @@ class Reproduce:
             raise ConfigError(f"seeds {self.seeds}, jobs {self.jobs}: must be 1 or more")
         experiments = choose(self.experiments)
         find_config(self.config)
-        with path_finding(self.room, self.robot):
-            pass  # whatever is wrong with them is said now, and once
+        build_scene(self.room, self.robot)  # whatever is wrong with them is said now, and once
         study = Study(self.config, self.room, self.robot, self.seeds)
         screen = console(json_wanted=self.json)
         folder = output_file(f"{self.out}/reproduce/{self.config}/runs", "probe", ".csv").parent

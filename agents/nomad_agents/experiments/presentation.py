@@ -15,7 +15,7 @@ from nomad_agents.experiments.experiment import (
     Verdict,
 )
 from nomad_agents.experiments.export import export
-from nomad_agents.experiments.illustrate import illustrate
+from nomad_agents.experiments.illustrate import Illustration, illustrate
 from nomad_agents.experiments.report import NoVideo, Section, Video, provenance, write_report
 from nomad_agents.experiments.reproduction import Results
 from nomad_agents.experiments.runs import Result, Run
@@ -119,9 +119,11 @@ def present(
 
 
 def _section(
-    finding: Finding, study: Study, pictures: Sequence[Any], shown: Video | NoVideo
+    finding: Finding, study: Study, pictures: Sequence[Illustration], shown: Video | NoVideo
 ) -> Section:
     each, table, verdict = finding
+    # Drawn as .pdf for print and .png for the screen.
+    shown_pictures = [p._replace(path=p.path.with_name(f"{p.path.name}.png")) for p in pictures]
     return Section(
         each.name,
         each.title,
@@ -129,7 +131,7 @@ def _section(
         each.source,
         verdict,
         table,
-        pictures,
+        shown_pictures,
         shown,
         command(each, study),
     )

@@ -23,8 +23,8 @@ class PlannerConfig:
     occupied : float
         Above this probability a cell bars the way; those that no cone sees do not.
     margin : float
-        What the grid shows can be so much nearer [m]: a cell, for its size and for the noise.
-        With more the robot dithers at corners and is slow to learn the way out of a niche.
+        The planned way keeps this much off the centres of such cells [m]: half a cell, and the
+        security distance, nearer than which a move is stopped.
     """
 
     k_length: float = 0.75
@@ -32,7 +32,7 @@ class PlannerConfig:
     k_clear: float = 0.1
     k_alpha: float = math.radians(45)
     occupied: float = 0.5
-    margin: float = 0.2
+    margin: float = 0.15
 
 
 @dataclass(frozen=True)
@@ -95,6 +95,7 @@ FAITHFUL = ReactivePlannerConfig()
 TUNED = replace(
     FAITHFUL,
     k_ind=0.02,
+    planner=replace(FAITHFUL.planner, margin=0.25),
     situation=replace(FAITHFUL.situation, circular=True),
 )
 CONFIGS: dict[str, ReactivePlannerConfig] = {"faithful": FAITHFUL, "tuned": TUNED}
