@@ -29,6 +29,7 @@ from nomad_agents.training import TrainingConfig
 from nomad_mj.envs import PathFinding
 
 STARTS = 10
+UNSEEN = 50
 _MOST_PASSES = 40
 
 
@@ -84,7 +85,7 @@ class NoIntensity(Experiment):
                     keep_agent(run, folder, env, agent)
             else:
                 agent = acting_agent(run, folder, env)
-            row, trials = assess(env, agent, run.seed)
+            row, trials = assess(env, agent, run.seed, UNSEEN)
             result.row |= row
             result.episodes = episode_rows(trials)
             if run.seed == 0:

@@ -18,11 +18,17 @@ from nomad_agents.experiments.experiment import (
     Verdict,
     column,
 )
-from nomad_agents.experiments.learnt import keep_agent, kept_agent, learn
-from nomad_agents.experiments.measures import FEW_STARTS, assess, episode_rows
+from nomad_agents.experiments.learnt import (
+    acting_agent,
+    keep_agent,
+    kept_agent,
+    learn,
+    trained_agent,
+)
+from nomad_agents.experiments.measures import assess, episode_rows
 from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.reactive_planner import ReactivePlanner
-from nomad_agents.registry import find_config, make_agent
+from nomad_agents.registry import find_config
 from nomad_agents.training import TrainingConfig
 from nomad_mj.envs import PathFinding
 from nomad_mj.tasks import RangeNoise
@@ -51,7 +57,6 @@ class Noise(Experiment):
     title = "Noisy range sensors"
     claim = "The approach deals effectively with noisy sensors: readings are wrong by up to 15 %."
     source = "sections 2.1 and 4"
-    needs_trained = False
     table = tuple(
         TableRow(f"{case}: {label}", key, case, digits=digits, total=total)
         for case in NOISES
@@ -73,17 +78,18 @@ class Noise(Experiment):
         noise = NOISES[run.case]
         result = Result(run, {"level": noise.level, "kind": noise.kind})
         with _open(run) as env:
-            layout, config = env.scene.robot.layout, find_config(run.config)
-            if run.agent == LEARNER:
-                agent = ReactivePlanner(layout, config)
+            if run.agent == LEARNER and noise != RangeNoise():
+                agent = ReactivePlanner(env.scene.robot.layout, find_config(run.config))
                 settings = TrainingConfig(run.seed, max_passes=_MOST_PASSES)
                 row, result.curve = learn(env, agent, settings)
                 result.row |= row
                 if run.seed == 0:
                     keep_agent(run, folder, env, agent)
             else:
-                agent = make_agent(run.agent, layout, config)
-            row, trials = assess(env, agent, run.seed, FEW_STARTS)
+                agent = acting_agent(run, folder, env)
+                if run.agent == LEARNER:  # which has learnt with this noise
+                    result.row |= trained_agent(run, folder)[1].row
+            row, trials = assess(env, agent, run.seed)
             result.row |= row
             result.episodes = episode_rows(trials)
         return result

@@ -27,7 +27,7 @@ from nomad_agents.experiments.learnt import (
     learn,
     trained_agent,
 )
-from nomad_agents.experiments.measures import FEW_STARTS, assess, episode_rows, judge_actions
+from nomad_agents.experiments.measures import assess, episode_rows, judge_actions
 from nomad_agents.experiments.pictures import LATTICE, action_map, way
 from nomad_agents.experiments.runs import Result, Row, Run
 from nomad_agents.reactive_planner import ReactivePlanner
@@ -99,7 +99,7 @@ class OtherPlaces(Experiment):
         result = Result(run, {})
         with _open(run) as env:
             agent = acting_agent(run, folder, env)
-            row, trials = assess(env, agent, run.seed, FEW_STARTS)
+            row, trials = assess(env, agent, run.seed)
             result.episodes = episode_rows(trials)
             result.row |= row
             if isinstance(agent, ReactivePlanner):
@@ -108,7 +108,7 @@ class OtherPlaces(Experiment):
                 if run.seed == 0:
                     result.pictures = {**pictures, "ways": [way(t) for t in trials[:_SHOWN]]}
                 agent.config = replace(agent.config, no_match="stay")
-                alone, _ = assess(env, agent, run.seed, FEW_STARTS)
+                alone, _ = assess(env, agent, run.seed)
                 result.row["success_alone"] = alone["success_rate"]
         return result
 
@@ -168,7 +168,7 @@ class Adapting(Experiment):
                 result.row, result.curve = learn(
                     env, agent, TrainingConfig(seed, max_passes=_MOST_PASSES)
                 )
-            row, trials = assess(env, agent, run.seed, FEW_STARTS)
+            row, trials = assess(env, agent, run.seed)
             result.row |= row
             result.episodes = episode_rows(trials)
             if isinstance(agent, ReactivePlanner):
@@ -180,7 +180,7 @@ class Adapting(Experiment):
                     keep_agent(run, folder, env, agent)
         if isinstance(agent, ReactivePlanner):
             with nomad_mj.load("path_finding", room=run.room, robot=run.robot) as env:
-                old, _ = assess(env, agent, run.seed, FEW_STARTS)
+                old, _ = assess(env, agent, run.seed)
                 result.row["old_success_rate"] = old["success_rate"]
         return result
 
