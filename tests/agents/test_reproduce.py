@@ -72,10 +72,10 @@ def test_a_second_call_does_nothing_but_read(call: Call, whole: Path) -> None:
 def test_killed_and_started_again_it_makes_the_same_tables(
     call: Call, whole: Path, small_room: Path, tmp_path: Path, number: int
 ) -> None:
-    words = [EXPERIMENT, "--seeds", "2", "--room", str(small_room), "--config", "tuned"]
+    words = ["reproduce", EXPERIMENT, "--seeds", "2", "--room", str(small_room)]
+    words += ["--config", "tuned", "--no-videos", "--out", str(tmp_path), "--jobs", "1"]
     process = subprocess.Popen(
-        [sys.executable, "-m", "nomad_agents.cli.main", "reproduce", *words]
-        + ["--no-videos", "--out", str(tmp_path), "--jobs", "1"],
+        [sys.executable, "-m", "nomad_agents.cli.main", *words],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         # A shell lets what it runs in the background ignore Ctrl-C, and so would this.
