@@ -1,0 +1,38 @@
+"""Bring the tables of a document up to date with what `nomad-mj reproduce` has measured.
+
+    python scripts/update_results.py renders docs/reproduction.md
+
+A table stands between the lines ``<!-- table EXPERIMENT CONFIG -->`` and ``<!-- end -->``.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+_PLACE = re.compile(r"(<!-- table (\S+) (\S+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+_PART = re.compile(r"^## (\S+): .*?(?=^## |\Z)", re.DOTALL | re.MULTILINE)
+
+
+def measured(folder: Path, config: str) -> dict[str, str]:
+    """Return command, table and verdict of each experiment that a folder of results holds."""
+    path = folder / "reproduce" / config / "tables.md"
+    if not path.exists():
+        return {}
+    parts = {match[1]: match[0] for match in _PART.finditer(path.read_text(encoding="utf-8"))}
+    # The document has headings and claims of its own.
+    return {name: part[part.index("`nomad-mj") :].rstrip() + "\n" for name, part in parts.items()}
+
+
+def update(text: str, folder: Path) -> str:
+    """Return a document with its tables replaced by those that were measured, where there are."""
+
+    def replace(match: re.Match[str]) -> str:
+        found = measured(folder, match[3]).get(match[2])
+        return f"{match[1]}{found or match[4]}{match[5]}"
+
+    return _PLACE.sub(replace, text)
+
+
+if __name__ == "__main__":
+    source, document = Path(sys.argv[1]), Path(sys.argv[2])
+    document.write_text(update(document.read_text(encoding="utf-8"), source), encoding="utf-8")

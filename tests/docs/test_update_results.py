@@ -1,0 +1,54 @@
+"""Tables of documents are those that were measured."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "update_results.py"
+TABLES = """## fig6: Learning
+
+It learns. (section 4)
+
+`nomad-mj reproduce fig6 --seeds 2 --config faithful`
+
+|  | paper |
+|---|---:|
+| reactions | 1424 |
+
+**holds**: it does.
+
+## fig7: Actions
+
+Claim.
+
+`nomad-mj reproduce fig7`
+
+| x |
+|---|
+"""
+PAGE = """# A page
+<!-- table fig6 faithful -->
+old
+<!-- end -->
+between
+<!-- table fig6 tuned -->
+kept
+<!-- end -->
+<!-- table fig99 faithful -->
+kept too
+<!-- end -->
+"""
+
+
+def test_tables_are_put_in_their_places_and_the_rest_is_kept(tmp_path: Path) -> None:
+    folder = tmp_path / "reproduce" / "faithful"
+    folder.mkdir(parents=True)
+    (folder / "tables.md").write_text(TABLES)
+    page = tmp_path / "page.md"
+    page.write_text(PAGE)
+    for _ in range(2):  # doing it again changes nothing
+        subprocess.run([sys.executable, str(SCRIPT), str(tmp_path), str(page)], check=True)
+        text = page.read_text()
+        assert "| reactions | 1424 |\n\n**holds**: it does.\n<!-- end -->\nbetween" in text
+        assert "old" not in text and "fig7" not in text and "It learns" not in text
+        assert text.count("kept") == 2 and text.count("<!-- end -->") == 3
