@@ -28,7 +28,7 @@ Claim.
 """
 PAGE = """# A page
 <!-- table fig6 faithful -->
-old
+stale
 <!-- end -->
 between
 <!-- table fig6 tuned -->
@@ -50,5 +50,5 @@ def test_tables_are_put_in_their_places_and_the_rest_is_kept(tmp_path: Path) -> 
         subprocess.run([sys.executable, str(SCRIPT), str(tmp_path), str(page)], check=True)
         text = page.read_text()
         assert "| reactions | 1424 |\n\n**holds**: it does.\n<!-- end -->\nbetween" in text
-        assert "old" not in text and "fig7" not in text and "It learns" not in text
+        assert "stale" not in text and "fig7" not in text and "It learns" not in text
         assert text.count("kept") == 2 and text.count("<!-- end -->") == 3
