@@ -14,7 +14,7 @@ from nomad_mj.errors import ConfigError
 
 def runs(count: int) -> list[Run]:
     return [
-        Run("known", "a case", LEARNER, "tuned", "a/room.xml", "robot", n) for n in range(count)
+        Run("known", "a case", LEARNER, "tuned", "paper_room", "nomad200", n) for n in range(count)
     ]
 
 

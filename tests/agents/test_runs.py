@@ -5,13 +5,14 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from known_work import die_at_two, draw, fail_at_two, runs
-from nomad_agents.experiments.runs import Result, Run, do_runs, stored_result
+from nomad_agents.experiments.runs import Result, do_runs, stored_result
 
 from nomad_mj.errors import ConfigError, OutputError, WorkerError
 
@@ -126,8 +127,18 @@ def test_killed_at_any_moment_it_goes_on_to_the_same_numbers(tmp_path: Path, num
     assert numbers(results) == numbers([draw(run, tmp_path) for run in runs(40)])
 
 
-def test_rooms_of_the_same_name_in_other_folders_do_not_share_a_result(tmp_path: Path) -> None:
-    one = Run("known", "", "agent", "tuned", "a/room.xml", "robot", 0)
-    other = Run("known", "", "agent", "tuned", "b/room.xml", "robot", 0)
+def test_rooms_of_the_same_name_or_edited_do_not_share_a_result(
+    tmp_path: Path, small_room: Path
+) -> None:
+    content = small_room.read_text()
+    one, other = (
+        replace(runs(1)[0], room=str(tmp_path / folder / "room.xml")) for folder in ("a", "b")
+    )
+    for run in (one, other):
+        Path(run.room).parent.mkdir()
+        Path(run.room).write_text(content)
     do_runs([one], draw, tmp_path, 1, lambda _: None)
-    assert stored_result(other, tmp_path) is None
+    assert one.file_name == other.file_name
+    assert stored_result(one, tmp_path) is not None and stored_result(other, tmp_path) is None
+    Path(one.room).write_text(content.replace("</mujoco>", "<!-- edited --></mujoco>"))
+    assert stored_result(one, tmp_path) is None

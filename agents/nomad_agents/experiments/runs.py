@@ -3,6 +3,7 @@
 A run that is on file is not done again: what was killed goes on where it was, to the same rows.
 """
 
+import hashlib
 import json
 import multiprocessing
 import os
@@ -23,6 +24,7 @@ import cattrs
 
 from nomad_agents.checkpoint import write_atomically
 from nomad_agents.registry import find_config
+from nomad_mj.assets import find_robot, find_room
 from nomad_mj.errors import OutputError, WorkerError
 
 Row = dict[str, Any]
@@ -92,7 +94,13 @@ def _key(run: Run) -> Row:
     """Return what a file must agree with to be this run's: no stale numbers of another version."""
     key = {**asdict(run), "packages": {name: version(name) for name in PACKAGES}}
     key["parameters"] = cattrs.unstructure(find_config(run.config))
+    key["files"] = [_digest(find_room(run.room)), _digest(find_robot(run.robot))]
     return json.loads(json.dumps(key))
+
+
+def _digest(path: Path) -> str:
+    """Return what tells a file's content from any other; what it includes is not looked at."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def stored_result(run: Run, folder: Path) -> Result | None:
