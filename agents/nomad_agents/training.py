@@ -114,6 +114,11 @@ def stream(seed: int, *key: int) -> np.random.SeedSequence:
     return np.random.SeedSequence(seed, spawn_key=key)
 
 
+def test_stream(config: TrainingConfig, passes: int, place: int) -> np.random.SeedSequence:
+    """Return the seed of a test episode: after so many passes, from the start at this place."""
+    return stream(config.seed, _TEST, passes, place)
+
+
 def train(
     env: PathFinding,
     agent: ReactivePlanner,
@@ -194,7 +199,7 @@ def _test(
     episode = run_episode(
         env,
         agent,
-        seed=stream(config.seed, _TEST, training.passes, training.next_start),
+        seed=test_stream(config, training.passes, training.next_start),
         start=starts[training.next_start],
         max_decisions=config.test_decisions,
     )

@@ -122,3 +122,12 @@ def vars_of(result: Result) -> dict[str, object]:
 def any_nan(part: object) -> bool:
     """Whether a NaN, which is unlike itself, is among the numbers."""
     return math.nan.__repr__() in repr(part)
+
+
+def test_the_way_shown_is_that_of_the_test_that_ended_the_learning(
+    trained: tuple[Study, Path], small: None
+) -> None:
+    study, folder = trained
+    experiment = EXPERIMENTS["fig13"]
+    result = experiment.work(experiment.runs(study)[0], folder)
+    assert result.row["learn_solved_all"] and result.pictures["ways"][0]["reached"]
