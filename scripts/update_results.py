@@ -2,7 +2,8 @@
 
     python scripts/update_results.py renders docs/reproduction.md
 
-A table stands between the lines ``<!-- table EXPERIMENT CONFIG -->`` and ``<!-- end -->``.
+A table stands between the lines ``<!-- table EXPERIMENT CONFIG -->`` and ``<!-- end -->``, one of all
+verdicts between ``<!-- verdicts CONFIG ... -->`` and ``<!-- end -->``.
 """
 
 import re
@@ -10,6 +11,8 @@ import sys
 from pathlib import Path
 
 _PLACE = re.compile(r"(<!-- table (\S+) (\S+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+_VERDICTS = re.compile(r"(<!-- verdicts ([^>]+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+_VERDICT = re.compile(r"^\*\*(.*)\*\*: ", re.MULTILINE)
 _PART = re.compile(r"^## (\S+): .*?(?=^## |\Z)", re.DOTALL | re.MULTILINE)
 
 
@@ -30,7 +33,24 @@ def update(text: str, folder: Path) -> str:
         found = measured(folder, match[3]).get(match[2])
         return f"{match[1]}{found or match[4]}{match[5]}"
 
-    return _PLACE.sub(replace, text)
+    def judge(match: re.Match[str]) -> str:
+        found = _verdicts(folder, match[2].split())
+        return f"{match[1]}{found or match[3]}{match[4]}"
+
+    return _VERDICTS.sub(judge, _PLACE.sub(replace, text))
+
+
+def _verdicts(folder: Path, configs: list[str]) -> str:
+    """Return the table of the verdicts that there are under each configuration."""
+    held = {config: measured(folder, config) for config in configs}
+    names = dict.fromkeys(name for parts in held.values() for name in parts)
+    if not names:
+        return ""
+    rows = [["", *configs], ["---"] * (len(configs) + 1)]
+    for name in names:
+        verdicts = (_VERDICT.search(parts.get(name, "")) for parts in held.values())
+        rows.append([name, *(verdict[1] if verdict else "" for verdict in verdicts)])
+    return "".join(f"| {' | '.join(row)} |\n" for row in rows)
 
 
 if __name__ == "__main__":

@@ -25,6 +25,8 @@ Claim.
 
 | x |
 |---|
+
+**does not hold**: no.
 """
 PAGE = """# A page
 <!-- table fig6 faithful -->
@@ -36,6 +38,8 @@ kept
 <!-- end -->
 <!-- table fig99 faithful -->
 kept too
+<!-- end -->
+<!-- verdicts faithful tuned -->
 <!-- end -->
 """
 
@@ -50,5 +54,8 @@ def test_tables_are_put_in_their_places_and_the_rest_is_kept(tmp_path: Path) -> 
         subprocess.run([sys.executable, str(SCRIPT), str(tmp_path), str(page)], check=True)
         text = page.read_text()
         assert "| reactions | 1424 |\n\n**holds**: it does.\n<!-- end -->\nbetween" in text
-        assert "stale" not in text and "fig7" not in text and "It learns" not in text
-        assert text.count("kept") == 2 and text.count("<!-- end -->") == 3
+        assert "stale" not in text and "It learns" not in text
+        assert text.count("kept") == 2 and text.count("<!-- end -->") == 4
+        verdicts = "|  | faithful | tuned |\n| --- | --- | --- |\n| fig6 | holds |  |\n"
+        verdicts += "| fig7 | does not hold |  |\n"
+        assert verdicts in text
