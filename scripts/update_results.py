@@ -2,8 +2,8 @@
 
     python scripts/update_results.py renders docs/reproduction.md
 
-A table stands between the lines ``<!-- table EXPERIMENT CONFIG -->`` and ``<!-- end -->``, one of all
-verdicts between ``<!-- verdicts CONFIG ... -->`` and ``<!-- end -->``.
+A table stands between the lines ``<!-- table EXPERIMENT CONFIG -->`` and ``<!-- end -->``, that of
+all verdicts between ``<!-- verdicts CONFIG ... -->`` and ``<!-- end -->``.
 """
 
 import re
