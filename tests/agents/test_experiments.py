@@ -33,7 +33,7 @@ def trained(tmp_path_factory: pytest.TempPathFactory, small_room: Path) -> tuple
 @pytest.fixture
 def small(monkeypatch: pytest.MonkeyPatch, small_room: Path) -> None:
     """Let all experiments make do with the small room, and with four unseen starts."""
-    monkeypatch.setattr(places, "PLACES", {"elsewhere": places.Place(goal=(-2.0, 3.0))})
+    monkeypatch.setattr(places, "PLACES", dict.fromkeys(places.PLACES, places.Place("", (-2, 3))))
     monkeypatch.setattr(concave, "ROOM", str(small_room))
     monkeypatch.setattr(moving, "_FILMS", 1)
 
