@@ -88,7 +88,7 @@ def _read(kind: str, path: Path) -> mujoco.MjSpec:
         except (ValueError, RuntimeError, UnicodeDecodeError) as error:
             reason = " ".join(str(error).split())
             if path.suffix != ".xml":
-                reason += "; its name must end in .xml"
+                reason += "; its name must end in .xml (nomad-mj room makes one of a map)"
             raise ModelError(f"{kind} file {str(path)!r} is not valid MJCF: {reason}") from None
     if any("NaN" in warning for warning in said):
         raise ModelError(f"{kind} file {str(path)!r} holds a NaN; give a number in its place")

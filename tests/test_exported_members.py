@@ -23,6 +23,10 @@ PUBLIC = {
         "Drift Movers Moving MovingBody MovingGoal MovingObstacles Walk add_obstacles place_goal "
         "read_moving"
     ),
+    "nomad_mj.rooms": (
+        "Box Cylinder FREE OCCUPIED Occupancy Polygon Room UNKNOWN furnish maze_room merge_cells "
+        "random_room read_floor_image read_plan read_room read_ros_map room_of_map to_mjcf"
+    ),
     "nomad_mj.robots": (
         "ACTUATORS ENCODERS JOINTS PREFIX RayIndex RobotDescription describe_robot group_rays "
         "report_surfaces set_rays_per_cone unclip_surfaces"

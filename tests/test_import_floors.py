@@ -15,7 +15,7 @@ FLOORS = (
     ("geometry", "_gl_probe"),
     ("perception", "motion", "_gl"),
     ("assets", "robots", "arenas"),
-    ("movers",),
+    ("movers", "rooms"),
     ("scene",),
     ("tasks",),
     ("envs",),

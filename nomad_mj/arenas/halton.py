@@ -33,6 +33,7 @@ def halton_starts(
     radius: float = RADIUS,
     clearance: float = CLEARANCE,
     min_goal_distance: float = MIN_GOAL_DISTANCE,
+    fewest: int | None = None,
 ) -> FloatArray:
     """Return the first points of the Halton sequence (bases 2 and 3) that can be starts.
 
@@ -53,10 +54,12 @@ def halton_starts(
         Its perimeter is farther than this from everything [m].
     min_goal_distance : float
         Its centre is at least this far from the goal, in a straight line [m].
+    fewest : int, optional
+        So many are enough where the room has no more; `n` by default.
 
     Returns
     -------
-    ndarray, shape (n, 2)
+    ndarray, shape (n, 2), or fewer rows where `fewest` allows it
 
     Raises
     ------
@@ -68,10 +71,11 @@ def halton_starts(
     keep = shapely.contains_xy(plan.interior(radius, goal), points)
     keep &= plan.clearance(points, radius) > clearance
     keep &= np.linalg.norm(points - np.asarray(goal), axis=-1) >= min_goal_distance
-    if keep.sum() < n:
+    needed = n if fewest is None else fewest
+    if keep.sum() < needed:
         raise StartError(
-            f"the room has only {keep.sum()} of {n} starts {clearance:g} m clear of everything and "
-            f"{min_goal_distance:g} m from the goal; ask for fewer, or make room"
+            f"the room has only {keep.sum()} of {needed} starts {clearance:g} m clear of everything "
+            f"and {min_goal_distance:g} m from the goal; ask for fewer, or make room"
         )
     return points[keep][:n]
 

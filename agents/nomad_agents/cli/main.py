@@ -13,6 +13,7 @@ from nomad_agents.cli.listing import List
 from nomad_agents.cli.parsing import parse
 from nomad_agents.cli.record import Record
 from nomad_agents.cli.reproduce import Reproduce
+from nomad_agents.cli.room import MakeRoom
 from nomad_agents.cli.train import Train
 from nomad_mj.errors import NomadError
 
@@ -21,6 +22,7 @@ COMMANDS: dict[str, type[Any]] = {
     "evaluate": Evaluate,
     "record": Record,
     "reproduce": Reproduce,
+    "room": MakeRoom,
     "list": List,
     "bench": Bench,
     "demo": Demo,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import nomad_mj
+from nomad_agents.cli.parsing import parse_place
 from nomad_mj import MovingGoal, MovingObstacles, OdometryNoise, RangeNoise
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, PathFinding
 from nomad_mj.errors import CheckpointError, ConfigError
@@ -63,13 +64,7 @@ class TaskOptions:
 
     def _goal_place(self) -> tuple[float, float] | None:
         """Return where `--goal` is [m], None for the room's own."""
-        if not self.goal:
-            return None
-        try:
-            x, y = (float(part) for part in self.goal.split(","))
-        except ValueError:
-            raise ConfigError(f"goal {self.goal!r}: must be X,Y in metres, such as 8,2.5") from None
-        return x, y
+        return parse_place("goal", self.goal)
 
     def conditions(self) -> dict[str, Any]:
         """Return under which conditions the robot drives, as plain data: all but room and robot."""
