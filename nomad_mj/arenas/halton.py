@@ -74,8 +74,8 @@ def halton_starts(
     needed = n if fewest is None else fewest
     if keep.sum() < needed:
         raise StartError(
-            f"the room has only {keep.sum()} of {needed} starts {clearance:g} m clear of everything "
-            f"and {min_goal_distance:g} m from the goal; ask for fewer, or make room"
+            f"the room has only {keep.sum()} of {needed} starts {clearance:g} m clear of "
+            f"everything and {min_goal_distance:g} m from the goal; ask for fewer, or make room"
         )
     return points[keep][:n]
 

@@ -38,9 +38,9 @@ def read_image(path: Path) -> tuple[FloatArray, Mask]:
     if not path.is_file():
         raise ModelError(f"{what} does not exist; a map's YAML file names it relative to itself")
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            image = Image.open(path, formats=_FORMATS)
+        with warnings.catch_warnings(), path.open("rb") as file:
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            image = Image.open(file, formats=_FORMATS)
             if image.width * image.height > MOST_PIXELS:
                 raise ModelError(
                     f"{what} has {image.width} x {image.height} pixels; at most "

@@ -122,6 +122,8 @@ def _region(grid: Occupancy, free: Mask, goal: tuple[float, float] | None) -> Ma
         raise ModelError("has no free space; is it negated, or are its thresholds wrong?")
     if goal is None:
         return np.asarray(labels == np.bincount(labels[free]).argmax())
+    if not (math.isfinite(goal[0]) and math.isfinite(goal[1])):
+        raise ModelError(f"goal {goal}: must be x, y in metres")
     row, column = (index + 1 for index in grid.cell_at(goal))
     within = 0 <= row < free.shape[0] and 0 <= column < free.shape[1]
     if not within or not free[row, column]:

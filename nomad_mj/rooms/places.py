@@ -55,6 +55,8 @@ def furnish(
     """
     if starts is not None and not 1 <= starts <= 1000:
         raise ConfigError(f"starts {starts}: must be 1 to 1000")
+    if goal is not None and not np.isfinite(goal).all():
+        raise ConfigError(f"goal {goal}: must be x, y in metres")
     plan = floor_plan(room)
     target = goal or room.goal or _most_open(room, plan, radius)
     chosen = room.starts

@@ -21,11 +21,6 @@ def image(path: Path) -> str:
 def test_rooms_are_written_and_load(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = str(tmp_path / "room.xml")
     for source in (["random", "--seed", "3"], [image(tmp_path / "a.png"), "--resolution", "0.1"]):
-        assert main(["room", *source, "-o", out, "--starts", "4", "--goal", "4,4", "--json"]) in (
-            0,
-            2,
-        )
-        capsys.readouterr()
         assert main(["room", *source, "-o", out, "--starts", "4", "--json"]) == 0
         said = json.loads(capsys.readouterr().out)
         assert said["room"] == out and said["starts"] == 4
@@ -47,8 +42,8 @@ def test_rooms_are_written_and_load(tmp_path: Path, capsys: pytest.CaptureFixtur
         (["a.png"], "an image needs a resolution"),
         (["a.png", "--resolution", "0.1", "--within", "-1"], "within -1: must be above 0 m"),
         (["a.png", "--resolution", "nan"], "resolution nan: must be 0.0001 to 100"),
-        (["a.png", "--resolution", "0.001"], "has only"),
-        (["paper.xml"], "its name must end in one of: .yaml, .yml, .pgm, .png, .bmp"),
+        (["a.png", "--resolution", "0.001"], "does not fit at"),
+        (["paper.xml"], "its name must end in one of .yaml, .yml, .pgm, .png, .bmp"),
     ],
 )
 def test_mistakes_are_told_in_one_line(
