@@ -104,8 +104,10 @@ def room_of_map(
         x, y = grid.to_world((column - 0.5, row - 0.5))
         goal = round(float(x), 4), round(float(y), 4)
     if math.isfinite(within):
-        inside = _region(grid, inside & _near(grid, inside.shape, goal, within), goal)
-    shell = np.asarray(ndimage.binary_dilation(inside, np.ones((3, 3)))) & ~inside
+        near = _near(grid, inside.shape, goal, within)
+        inside = _region(grid, np.logical_and(inside, near), goal)
+    grown = ndimage.binary_dilation(inside, np.ones((3, 3)))
+    shell = np.logical_and(grown, ~inside)
     walls = tuple(_box(grid, rectangle) for rectangle in merge_cells(shell, ~inside & ~shell) - 1)
     rows, columns = np.nonzero(inside)
     low, high = (columns.min() - 1, rows.min() - 1), (columns.max(), rows.max())
@@ -142,7 +144,7 @@ def _near(
     """Return which cells lie within a square around the goal's."""
     row, column = (index + 1 for index in grid.cell_at(goal))
     reach = max(1, int(min(within / grid.resolution, max(shape))))
-    near = np.zeros(shape, dtype=np.bool_)
+    near: Mask = np.zeros(shape, dtype=np.bool_)
     near[max(0, row - reach) : row + reach + 1, max(0, column - reach) : column + reach + 1] = True
     return near
 

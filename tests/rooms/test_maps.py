@@ -59,13 +59,14 @@ def test_all_kinds_of_images_say_the_same(tmp_path: Path) -> None:
 
 def test_modes_and_thresholds(tmp_path: Path) -> None:
     pixels = np.array([[0, 100, 150, 205, 255]], dtype=np.uint8)  # darkness 1, .61, .41, .2, 0
-    for values, cells in (
+    cases: tuple[tuple[dict[str, Any], list[int]], ...] = (
         ({}, [OCCUPIED, UNKNOWN, UNKNOWN, UNKNOWN, FREE]),
         ({"free_thresh": 0.25}, [OCCUPIED, UNKNOWN, UNKNOWN, FREE, FREE]),
         ({"occupied_thresh": 0.5}, [OCCUPIED, OCCUPIED, UNKNOWN, UNKNOWN, FREE]),
         ({"mode": "scale"}, [OCCUPIED, OCCUPIED, FREE, FREE, FREE]),
         ({"mode": "raw"}, [FREE, OCCUPIED, UNKNOWN, UNKNOWN, UNKNOWN]),
-    ):
+    )
+    for values, cells in cases:
         read = read_ros_map(write_map(tmp_path, pixels, **values)).cells
         assert read.tolist() == [cells], values
 
