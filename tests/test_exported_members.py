@@ -39,7 +39,7 @@ PUBLIC = {
 }
 ERRORS = (
     "CheckpointError ConfigError ModelError NomadError OutputError RenderError StartError "
-    "UnknownNameError"
+    "UnknownNameError WorkerError"
 )
 
 
