@@ -130,10 +130,10 @@ def test_a_corrupt_checkpoint_is_not_resumed_nor_overwritten(
 def test_without_resume_training_begins_anew(small_room: Path, tmp_path: Path) -> None:
     arguments = ["train", "--room", str(small_room), "--out", str(tmp_path / "a.npz")]
     made: list[int] = []
-    for decisions in (12, 1):
+    for decisions in (30, 1):
         assert main([*arguments, "--max-decisions", str(decisions)]) == 0
         made.append(load_checkpoint(tmp_path / "a.npz").training["decisions"])
-    assert made[0] >= 12 > made[1]
+    assert made[0] >= 30 > made[1]
 
 
 def test_a_full_disk_is_one_line_and_keeps_the_old_file(
