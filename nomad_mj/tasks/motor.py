@@ -146,7 +146,7 @@ class MotorTask(control.Task):
 
     def before_step(self, action: Any, physics: NavigationPhysics) -> None:
         """Command the motors: translate [m/s], steer [rad/s], turret [rad/s]."""
-        physics.data.ctrl[self._motors] = action
+        physics.command(self._motors, action)
         self._observation = None
         if self.movers is not None:
             self.movers.advance(CONTROL_TIMESTEP, physics.pose()[:2])

@@ -56,6 +56,7 @@ class NavigationPhysics(Physics):
             "_sensordata",
             "_history",
             "_qpos",
+            "_ctrl",
             "_mocap_pos",
         ):  # they would keep the memory alive
             vars(self).pop(name, None)
@@ -73,6 +74,7 @@ class NavigationPhysics(Physics):
         self._surfaces = rays.address[rays.specular, None] + np.arange(1, 7)
         joints = [model.joint(PREFIX + name) for name in JOINTS]
         self._qpos: FloatArray = data.qpos
+        self._ctrl: FloatArray = data.ctrl
         self._pose_address = np.array([int(joint.qposadr[0]) for joint in joints[:3]])
         servo = model.actuator(PREFIX + "steer")
         self._steer_servo = int(servo.actadr[0])  # -1 where the servo has no memory
@@ -108,6 +110,10 @@ class NavigationPhysics(Physics):
             kinds = list(mujoco.mjtWarning.__members__)
             names = [kind for kind, count in zip(kinds, self._warnings, strict=False) if count]
             raise PhysicsError(f"the simulation diverged at {data.time:.3f} s: {', '.join(names)}")
+
+    def command(self, motors: IntArray, speeds: Any) -> None:
+        """Set the motors of these numbers to speeds, as many [m/s], [rad/s]."""
+        self._ctrl[motors] = speeds
 
     def place(self, pose: Pose) -> None:
         """Put the robot at `pose`, its wheels along the heading, its turret looking along +x."""
