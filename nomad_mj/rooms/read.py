@@ -46,17 +46,7 @@ def read_room(
     """
     if within <= 0 or math.isnan(within):
         raise ConfigError(f"within {within:g}: must be above 0 m")
-    is_image = path.suffix.lower() in SUFFIXES
-    if not path.is_file():
-        raise ModelError(f"room file {str(path)!r} does not exist")
-    if not is_image and path.suffix.lower() not in YAML:
-        raise ModelError(
-            f"room file {str(path)!r}: its name must end in one of {', '.join(YAML + SUFFIXES)}; "
-            "MJCF files need no conversion"
-        )
-    if is_image != (resolution is not None):
-        told = "an image needs" if is_image else "only an image takes"
-        raise ConfigError(f"{told} a resolution, in metres a pixel: {str(path)!r}")
+    _check(path, resolution)
     if resolution is None and "image" not in read_yaml(path):
         return furnish(read_plan(path), goal, starts)
     if resolution is None:
@@ -68,3 +58,18 @@ def read_room(
     except ModelError as error:
         raise ModelError(f"map {str(path)!r}: {error}") from None
     return furnish(room, None, starts)
+
+
+def _check(path: Path, resolution: float | None) -> None:
+    """Make sure that there is a file of a known kind, and a resolution for an image alone."""
+    is_image = path.suffix.lower() in SUFFIXES
+    if not path.is_file():
+        raise ModelError(f"room file {str(path)!r} does not exist")
+    if not is_image and path.suffix.lower() not in YAML:
+        raise ModelError(
+            f"room file {str(path)!r}: its name must end in one of {', '.join(YAML + SUFFIXES)}; "
+            "MJCF files need no conversion"
+        )
+    if is_image != (resolution is not None):
+        told = "an image needs" if is_image else "only an image takes"
+        raise ConfigError(f"{told} a resolution, in metres a pixel: {str(path)!r}")

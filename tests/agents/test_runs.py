@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from known_work import die_at_two, draw, fail_at_two, runs
+from known_work import die_at_two, draw, draw_slowly, fail_at_two, runs
 from nomad_agents.experiments.runs import Result, do_runs, stored_result
 
 from nomad_mj.errors import ConfigError, OutputError, WorkerError
@@ -92,6 +92,18 @@ def test_an_error_in_a_run_comes_through_and_keeps_the_others(tmp_path: Path) ->
     with pytest.raises(ConfigError, match=r"^two: must be anything else$"):
         do_runs(runs(COUNT), fail_at_two, tmp_path, 1, lambda _: None)
     assert [run.seed for run in runs(COUNT) if stored_result(run, tmp_path)][:2] == [0, 1]
+
+
+def test_what_is_raised_between_two_results_ends_the_processes(tmp_path: Path) -> None:
+    def interrupt(_: Result) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as raised:
+        do_runs(runs(40), draw_slowly, tmp_path, 2, interrupt)
+    assert raised.traceback  # still held, as a caller may
+    left = done(tmp_path)
+    time.sleep(0.7)
+    assert done(tmp_path) == left and len(left) < 40
 
 
 def test_a_process_that_is_killed_is_told_and_the_others_are_kept(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from nomad_agents.agent import Agent
 from nomad_agents.checkpoint import load_checkpoint, save_checkpoint
 from nomad_agents.experiments.experiment import LEARNER
 from nomad_agents.experiments.runs import Result, Row, Run, stored_result
-from nomad_agents.reactive_planner import ReactivePlanner
+from nomad_agents.reactive_planner import ReactivePlanner, ReactivePlannerConfig
 from nomad_agents.registry import find_config, make_agent
 from nomad_agents.training import Training, TrainingConfig, train, training_report
 from nomad_mj.envs import PathFinding
@@ -71,6 +71,22 @@ def keep_agent(run: Run, folder: Path, env: PathFinding, agent: ReactivePlanner)
 def kept_agent(run: Run, folder: Path) -> ReactivePlanner:
     """Return the agent as a run has left it; raises CheckpointError if there is none."""
     return load_checkpoint(_checkpoint(run, folder)).agent
+
+
+def new_learner(
+    result: Result,
+    folder: Path,
+    env: PathFinding,
+    config: ReactivePlannerConfig,
+    settings: TrainingConfig,
+) -> ReactivePlanner:
+    """Return an agent that has learnt anew, kept for seed 0; `result` takes in how it learnt."""
+    agent = ReactivePlanner(env.scene.robot.layout, config)
+    row, result.curve = learn(env, agent, settings)
+    result.row |= row
+    if result.run.seed == 0:
+        keep_agent(result.run, folder, env, agent)
+    return agent
 
 
 def train_room(run: Run, folder: Path) -> Result:

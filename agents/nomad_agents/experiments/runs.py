@@ -12,9 +12,10 @@ import re
 import signal
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from pathlib import Path
@@ -190,24 +191,32 @@ def do_runs(
             after_run(result)
     missing = [run for run, result in results.items() if result is None]
     if missing:
-        # Spawned, not forked: a process starts without what this one has done so far.
-        context = multiprocessing.get_context("spawn")
-        pool = ProcessPoolExecutor(min(jobs, len(missing)), mp_context=context, initializer=_obey)
-        try:
-            waiting = [pool.submit(_timed, work, run, folder) for run in missing]
-            for future in as_completed(waiting):
-                result = future.result()
+        with closing(_do(missing, work, folder, jobs)) as done:
+            for result in done:
                 results[result.run] = result
                 after_run(result)
-        except BrokenProcessPool:
-            raise WorkerError(
-                "a process was killed, perhaps for want of memory; what is done is kept: take "
-                "fewer --jobs and run again"
-            ) from None
-        except BaseException:
-            for process in multiprocessing.active_children():
-                process.terminate()  # nobody who interrupts wants to wait for the present runs
-            raise
-        finally:
-            pool.shutdown(cancel_futures=True)
     return [result for result in results.values() if result is not None]
+
+
+def _do(
+    runs: Sequence[Run], work: Callable[[Run, Path], Result], folder: Path, jobs: int
+) -> Generator[Result, None, None]:
+    """Yield the results of runs as they come; whatever ends this ends the processes."""
+    # Spawned, not forked: a process starts without what this one has done so far.
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(min(jobs, len(runs)), mp_context=context, initializer=_obey)
+    try:
+        waiting = [pool.submit(_timed, work, run, folder) for run in runs]
+        for future in as_completed(waiting):
+            yield future.result()
+    except BrokenProcessPool:
+        raise WorkerError(
+            "a process was killed, perhaps for want of memory; what is done is kept: take "
+            "fewer --jobs and run again"
+        ) from None
+    except BaseException:
+        for process in multiprocessing.active_children():
+            process.terminate()  # nobody who interrupts wants to wait for the present runs
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)

@@ -81,7 +81,6 @@ class Ablations(Experiment):
     title = "The readings of the text"
     claim = "The behaviour does not depend much on the parameters' values."
     source = "section 4, Table 1"
-    needs_trained = True
     table = tuple(
         TableRow(f"{case}: {label}", key, case, digits=digits, total=total)
         for case in VARIANTS

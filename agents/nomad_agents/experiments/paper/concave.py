@@ -20,11 +20,10 @@ from nomad_agents.experiments.experiment import (
     Verdict,
     column,
 )
-from nomad_agents.experiments.learnt import acting_agent, keep_agent, kept_agent, learn
+from nomad_agents.experiments.learnt import acting_agent, kept_agent, new_learner
 from nomad_agents.experiments.measures import DECISIONS, episode_rows
 from nomad_agents.experiments.pictures import Way, way
 from nomad_agents.experiments.runs import Result, Run
-from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.registry import find_config
 from nomad_agents.training import TrainingConfig, test_stream
 from nomad_mj.arenas import Geodesic
@@ -97,16 +96,13 @@ class Concave(Experiment):
             if run.agent == LEARNER:
                 config = find_config(run.config)
                 config = replace(config, remember_good_actions=MEMORY[run.case])
-                agent = ReactivePlanner(env.scene.robot.layout, config)
                 settings = TrainingConfig(
                     run.seed, max_passes=LIMIT, max_decisions=LIMIT, starts=(START,)
                 )
-                result.row, result.curve = learn(env, agent, settings)
+                agent = new_learner(result, folder, env, config, settings)
                 row = result.row
                 row["soon"] = row["learn_solved_all"] and row["learn_reactions"] <= ENOUGH
                 found = test_stream(settings, row["learn_passes"], 0)
-                if run.seed == 0:
-                    keep_agent(run, folder, env, agent)
             else:
                 agent = acting_agent(run, folder, env)
                 found = test_stream(TrainingConfig(run.seed), 1, 0)

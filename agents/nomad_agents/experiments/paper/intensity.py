@@ -19,11 +19,10 @@ from nomad_agents.experiments.experiment import (
     Verdict,
     column,
 )
-from nomad_agents.experiments.learnt import acting_agent, keep_agent, kept_agent, learn
+from nomad_agents.experiments.learnt import acting_agent, kept_agent, new_learner
 from nomad_agents.experiments.measures import DECISIONS, assess, episode_rows
 from nomad_agents.experiments.pictures import spread_out, way
 from nomad_agents.experiments.runs import Result, Run
-from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.registry import find_config
 from nomad_agents.training import TrainingConfig
 from nomad_mj.envs import PathFinding
@@ -76,13 +75,9 @@ class NoIntensity(Experiment):
             if run.agent == LEARNER:
                 config = find_config(run.config)
                 situation = replace(config.situation, use_intensity=False)
-                agent = ReactivePlanner(
-                    env.scene.robot.layout, replace(config, situation=situation)
-                )
+                config = replace(config, situation=situation)
                 settings = TrainingConfig(run.seed, max_passes=_MOST_PASSES, starts=starts)
-                result.row, result.curve = learn(env, agent, settings)
-                if run.seed == 0:
-                    keep_agent(run, folder, env, agent)
+                agent = new_learner(result, folder, env, config, settings)
             else:
                 agent = acting_agent(run, folder, env)
             row, trials = assess(env, agent, run.seed, UNSEEN)

@@ -20,14 +20,12 @@ from nomad_agents.experiments.experiment import (
 )
 from nomad_agents.experiments.learnt import (
     acting_agent,
-    keep_agent,
     kept_agent,
-    learn,
+    new_learner,
     trained_agent,
 )
 from nomad_agents.experiments.measures import assess, episode_rows
 from nomad_agents.experiments.runs import Result, Run
-from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.registry import find_config
 from nomad_agents.training import TrainingConfig
 from nomad_mj.envs import PathFinding
@@ -79,12 +77,8 @@ class Noise(Experiment):
         result = Result(run, {"level": noise.level, "kind": noise.kind})
         with _open(run) as env:
             if run.agent == LEARNER and noise != RangeNoise():
-                agent = ReactivePlanner(env.scene.robot.layout, find_config(run.config))
                 settings = TrainingConfig(run.seed, max_passes=_MOST_PASSES)
-                row, result.curve = learn(env, agent, settings)
-                result.row |= row
-                if run.seed == 0:
-                    keep_agent(run, folder, env, agent)
+                agent = new_learner(result, folder, env, find_config(run.config), settings)
             else:
                 agent = acting_agent(run, folder, env)
                 if run.agent == LEARNER:  # which has learnt with this noise
