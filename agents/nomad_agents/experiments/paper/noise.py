@@ -40,7 +40,7 @@ NOISES = {
     "Gaussian 15 %": RangeNoise("gaussian", 0.15),
     "lost echoes": RangeNoise(level=0.15, grazing=math.radians(30)),
 }
-_MOST_PASSES = 10
+_MOST_PASSES = 6
 
 
 def _open(run: Run) -> PathFinding:

@@ -36,7 +36,7 @@ from nomad_agents.training import TrainingConfig
 from nomad_mj.envs import PathFinding
 
 _ADAPTING_SEED = 100_000  # added: other random numbers than those of the first training
-_MOST_PASSES = 10
+_MOST_PASSES = 8
 _SHOWN = 8
 
 
