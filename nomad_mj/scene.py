@@ -24,7 +24,9 @@ from nomad_mj.movers import (
 from nomad_mj.robots import (
     PREFIX,
     RobotDescription,
+    adopt,
     describe_robot,
+    read_sheet,
     report_surfaces,
     set_rays_per_cone,
     unclip_surfaces,
@@ -103,7 +105,7 @@ def _sample_per_control_step(spec: mujoco.MjSpec, sub_steps: int) -> None:
             sensor.nsample = max(sensor.nsample, 1)  # without a sample kept there is no interval
         elif sensor.type == mujoco.mjtSensor.mjSENS_TOUCH:
             sensor.nsample = sub_steps
-        elif sensor.name == PREFIX + "translate_encoder":
+        elif sensor.type == mujoco.mjtSensor.mjSENS_ACTUATORVEL:
             sensor.nsample = sub_steps - 1  # all but the last, which is in sensordata itself
 
 
@@ -170,6 +172,7 @@ def build_scene(
     _check_configs(moving_goal, moving_obstacles)
     room_path, robot_path = find_room(room), find_robot(robot)
     room_spec, robot_spec = _read("room", room_path), _read("robot", robot_path)
+    adopt(robot_spec, read_sheet(robot_path), robot_path.stem)
     if rays_per_cone is not None:
         set_rays_per_cone(robot_spec, rays_per_cone)
     report_surfaces(robot_spec, specular_rings)

@@ -64,21 +64,37 @@ class SensorLayout:
 
 @dataclass(frozen=True)
 class MotionLimits:
-    """Largest speeds and accelerations of the motors.
+    """Largest speeds and accelerations of a robot.
 
     Attributes
     ----------
     translate, translate_acceleration : float
         Driving [m/s], [m/s2].
-    steer, steer_acceleration : float
-        Turning the wheels [rad/s], [rad/s2].
-    turret, turret_acceleration : float
-        Turning the turret [rad/s], [rad/s2].
+    turn, turn_acceleration : float
+        Changing the direction of driving: turning the wheels of a synchro drive, else the robot
+        [rad/s], [rad/s2].
     """
 
     translate: float
     translate_acceleration: float
-    steer: float
-    steer_acceleration: float
-    turret: float
-    turret_acceleration: float
+    turn: float
+    turn_acceleration: float
+
+
+class Travel(NamedTuple):
+    """What the encoders tell of one control step, without any drift.
+
+    Attributes
+    ----------
+    forward, sideways : float
+        Way along the robot's heading and to the left of it [m].
+    heading : float
+        Direction in which the robot drives when it drives forward [rad], world frame.
+    sensors : float
+        Direction of the frame of the range sensors [rad], world frame.
+    """
+
+    forward: float
+    sideways: float
+    heading: float
+    sensors: float

@@ -15,8 +15,8 @@ PUBLIC = {
         "code_signal perceive pool"
     ),
     "nomad_mj.motion": (
-        "SAFE_CLEARANCE ActionSpec MotionConfig Outcome SynchroMove displacement ramp_speed "
-        "reinforcement"
+        "SAFE_CLEARANCE ActionSpec CarDrive Drive MotionConfig Move Outcome StraightMove "
+        "SynchroDrive WheeledDrive displacement ramp_speed reinforcement"
     ),
     "nomad_mj.arenas": "Arena FloorPlan Geodesic check_arena goal_site",
     "nomad_mj.movers": (
@@ -28,8 +28,8 @@ PUBLIC = {
         "random_room read_floor_image read_plan read_room read_ros_map room_of_map to_mjcf"
     ),
     "nomad_mj.robots": (
-        "ACTUATORS ENCODERS JOINTS PREFIX RayIndex RobotDescription describe_robot group_rays "
-        "report_surfaces set_rays_per_cone unclip_surfaces"
+        "PREFIX RayIndex RobotDescription Sheet adopt describe_robot find_sheet group_rays "
+        "read_sheet report_surfaces set_rays_per_cone unclip_surfaces"
     ),
     "nomad_mj.tasks": (
         "MotorConfig MotorEnvironment MotorTask NavigationPhysics OdometryNoise RangeNoise Start "

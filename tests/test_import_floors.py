@@ -14,6 +14,7 @@ FLOORS = (
     ("types", "errors"),
     ("geometry", "_gl_probe"),
     ("perception", "motion", "_gl"),
+    ("values",),
     ("assets", "robots", "arenas"),
     ("movers", "rooms"),
     ("scene",),

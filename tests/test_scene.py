@@ -140,7 +140,7 @@ def test_a_goal_that_cannot_be_reached_is_refused(own_room: OwnRoom) -> None:
 
 
 def test_a_room_is_no_robot_and_a_robot_no_room(own_room: OwnRoom) -> None:
-    wrong("robot 'paper_room'", "paper_room", list_rooms()["paper_room"], "'translate'")
+    wrong("robot 'paper_room'", "paper_room", list_rooms()["paper_room"], "no drive")
     wrong("room 'nomad200'", list_robots()["nomad200"], "nomad200", "'goal'")
 
 

@@ -1,5 +1,6 @@
 """Path finding: the decision level of the paper, a `dm_env` environment above the motor task."""
 
+import math
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -14,15 +15,12 @@ from nomad_mj.motion import (
     ActionSpec,
     MotionConfig,
     Outcome,
-    SynchroMove,
     displacement,
     reinforcement,
 )
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.tasks import MotorEnvironment, NavigationPhysics, Start
-from nomad_mj.types import FloatArray, IntArray
-
-_TURRET_GAIN = 4.0  # [1/s] with which the turret holds its direction
+from nomad_mj.types import FloatArray, IntArray, Travel
 
 
 @dataclass(frozen=True)
@@ -162,52 +160,46 @@ class PathFinding(dm_env.Environment):
         """Drive a displacement (2,) [m]."""
         task = self.motor.task
         x, y = move.tolist()
-        wheels, turret = self._angles()
         heading = float(np.arctan2(y, x))
-        drive = SynchroMove(
-            heading,
-            float(np.hypot(x, y)),
-            wheels,
-            self.scene.robot.limits,
-            self._motion,
-            CONTROL_TIMESTEP,
+        travel = self._facing(Travel(0.0, 0.0, 0.0, 0.0))
+        drive = self.scene.robot.drive.move(
+            heading, float(np.hypot(x, y)), travel, self._motion, CONTROL_TIMESTEP
         )
-        watched, (ahead, slack) = heading, self._ahead(heading, turret)
-        distance, driven, ticks = 0.0, 0.0, 0
+        watched = (drive.motion_heading, travel.sensors)
+        ahead, slack = self._ahead(*watched)
+        driven, ticks = 0.0, 0
         clearance = np.inf  # until the move is under way
         assert self._inner is not None
         bumped = bool(self._inner.observation["bumpers"].any())
         while True:
-            if drive.motion_heading != watched:
-                watched = drive.motion_heading
-                ahead, slack = self._ahead(watched, turret)
+            if (drive.motion_heading, travel.sensors) != watched:
+                watched = (drive.motion_heading, travel.sensors)
+                ahead, slack = self._ahead(*watched)
             free = float(np.minimum.reduce(task.ranges.take(ahead) + slack, initial=np.inf))
-            speed, steer = drive.command(distance, wheels, free, bumped)
+            command = drive.command(travel, free, bumped)
             if drive.done:
                 return Move(drive.outcome, clearance, driven, ticks)
-            self._inner = self.motor.step((speed, steer, -_TURRET_GAIN * turret))
-            observation = self._inner.observation
-            distance = float(observation["encoders"][0])
-            bumped = bool(np.count_nonzero(observation["bumpers"]))
-            wheels, turret = self._angles()
+            self._inner = self.motor.step(command)
+            bumped = bool(np.count_nonzero(self._inner.observation["bumpers"]))
+            travel = self._facing(task.travel)
             clearance = min(clearance, float(np.minimum.reduce(task.ranges)))
-            driven += abs(distance)
+            driven += math.hypot(travel.forward, travel.sideways)
             ticks += 1
             if self.on_control_step is not None:
                 self.on_control_step(self._inner)
 
-    def _angles(self) -> tuple[float, float]:
-        """Return the directions of the wheels and of the turret by odometry [rad]."""
+    def _facing(self, travel: Travel) -> Travel:
+        """Return a way with the directions that odometry tells."""
         assert self._inner is not None
-        _, _, wheels, turret = self._inner.observation["odometry"].tolist()
-        return wheels, turret
+        _, _, heading, sensors = self._inner.observation["odometry"].tolist()
+        return travel._replace(heading=heading, sensors=sensors)
 
-    def _ahead(self, heading: float, turret: float) -> tuple[IntArray, FloatArray]:
+    def _ahead(self, heading: float, sensors: float) -> tuple[IntArray, FloatArray]:
         """Return the sensors that look before the robot, and how much nearer things may be there.
 
         Beside it, beyond `ahead`, that is `beside` [m]: corners pass there between two sensors.
         """
-        off = np.abs((self._bearings + turret - heading + np.pi) % (2 * np.pi) - np.pi)
+        off = np.abs((self._bearings + sensors - heading + np.pi) % (2 * np.pi) - np.pi)
         before = np.flatnonzero(off <= max(np.pi / 2, self._motion.ahead) + 1e-9)
         slack = np.where(off[before] <= self._motion.ahead + 1e-9, 0.0, self._motion.beside)
         return before, slack

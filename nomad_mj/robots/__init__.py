@@ -1,25 +1,23 @@
 """What a robot file must offer, read from the compiled model."""
 
-from nomad_mj.robots.description import (
-    ACTUATORS,
-    ENCODERS,
-    JOINTS,
-    RobotDescription,
-    describe_robot,
-)
+from nomad_mj.robots.adopt import adopt
+from nomad_mj.robots.description import RobotDescription, describe_robot
+from nomad_mj.robots.naming import PREFIX
 from nomad_mj.robots.rays import set_rays_per_cone
-from nomad_mj.robots.rings import PREFIX, RayIndex, group_rays
+from nomad_mj.robots.rings import RayIndex, group_rays
+from nomad_mj.robots.sheet import Sheet, find_sheet, read_sheet
 from nomad_mj.robots.surfaces import report_surfaces, unclip_surfaces
 
 __all__ = [
-    "ACTUATORS",
-    "ENCODERS",
-    "JOINTS",
     "PREFIX",
     "RayIndex",
     "RobotDescription",
+    "Sheet",
+    "adopt",
     "describe_robot",
+    "find_sheet",
     "group_rays",
+    "read_sheet",
     "report_surfaces",
     "set_rays_per_cone",
     "unclip_surfaces",

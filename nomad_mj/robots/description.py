@@ -1,17 +1,20 @@
 """What the rest of the package has to know of a robot, read from its compiled MJCF."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
 
-from nomad_mj.errors import ModelError
-from nomad_mj.robots.rings import PREFIX, RayIndex, index_rays
-from nomad_mj.types import MotionLimits, SensorLayout
+from nomad_mj.motion import Drive, SynchroDrive
+from nomad_mj.robots.drives import Encoders, find_drive
+from nomad_mj.robots.extent import highest, perimeter
+from nomad_mj.robots.footing import Footing, find_footing
+from nomad_mj.robots.naming import PREFIX, NamedModel
+from nomad_mj.robots.rings import RayIndex, index_rays
+from nomad_mj.types import IntArray, MotionLimits, RangeRing, SensorLayout
 
-ACTUATORS = ("translate", "steer", "turret")
-JOINTS = ("base_x", "base_y", "steer", "turret")
-ENCODERS = ("translate_encoder", "steer_encoder", "turret_encoder")
+_BEHIND = (np.radians(150), np.radians(180), np.radians(210))  # where one looks who backs off
+_GAP = np.radians(15)  # between cones that together still see behind
 
 
 @dataclass(frozen=True)
@@ -24,8 +27,16 @@ class RobotDescription:
         The robot's name, for messages and checkpoints.
     layout : SensorLayout
         Size and rings of range sensors.
-    limits : MotionLimits
-        Speeds and accelerations of the motors.
+    drive : Drive
+        How it moves.
+    motors : array (M,)
+        Numbers of the actuators of `drive.motors`.
+    controls : array (M,)
+        Where their commands are in ``ctrl``.
+    encoders : Encoders
+        Where the encoders are.
+    footing : Footing
+        Where its pose is, and how to place it.
     height : float
         Height of the robot above the floor [m]; what hangs higher is no obstacle.
     bumpers : tuple of str
@@ -36,60 +47,19 @@ class RobotDescription:
 
     name: str
     layout: SensorLayout
-    limits: MotionLimits
+    drive: Drive
+    motors: IntArray
+    controls: IntArray
+    encoders: Encoders
+    footing: Footing
     height: float
     bumpers: tuple[str, ...]
     rays: RayIndex
 
-
-def _require(
-    model: mujoco.MjModel, robot: str, kind: mujoco.mjtObj, names: tuple[str, ...]
-) -> None:
-    """Raise a ModelError that names the missing elements and lists those that there are."""
-    missing = [n for n in names if mujoco.mj_name2id(model, kind, PREFIX + n) < 0]
-    if not missing:
-        return
-    what = kind.name.removeprefix("mjOBJ_").lower()
-    counts = {"actuator": model.nu, "joint": model.njnt, "sensor": model.nsensor}
-    present = [mujoco.mj_id2name(model, kind, i) or "" for i in range(counts[what])]
-    own = [n.removeprefix(PREFIX) for n in present if n.startswith(PREFIX)]
-    listed = ", ".join(own[:12]) + (", ..." if len(own) > 12 else "") if own else "none"
-    raise ModelError(f"robot {robot!r} lacks the {what} {missing[0]!r}; {what}s it has: {listed}")
-
-
-def _number(model: mujoco.MjModel, robot: str, name: str, default: float | None = None) -> float:
-    """Return the custom numeric `name` of the robot."""
-    index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_NUMERIC, PREFIX + name)
-    if index >= 0:
-        value = float(model.numeric_data[model.numeric_adr[index]])
-        if not (value > 0 or value == default):
-            raise ModelError(f"robot {robot!r}: its {name} is {value:g}; it must be above 0")
-        return value
-    if default is None:
-        raise ModelError(
-            f"robot {robot!r} lacks its {name}: add <custom><numeric name={name!r} data=.../>"
-            "</custom>"
-        )
-    return default
-
-
-def _limits(model: mujoco.MjModel, robot: str) -> MotionLimits:
-    speeds: list[float] = []
-    for name in ACTUATORS:
-        actuator = model.actuator(PREFIX + name)
-        if not actuator.ctrllimited[0] or actuator.ctrlrange[1] <= 0:
-            raise ModelError(
-                f"robot {robot!r}: actuator {name!r} needs a ctrlrange, its largest speed both ways"
-            )
-        speeds.append(float(actuator.ctrlrange[1]))
-    return MotionLimits(
-        translate=speeds[0],
-        translate_acceleration=_number(model, robot, "translate_max_acceleration", 0.76),
-        steer=speeds[1],
-        steer_acceleration=_number(model, robot, "steer_max_acceleration", 2.0),
-        turret=speeds[2],
-        turret_acceleration=_number(model, robot, "turret_max_acceleration", 2.0),
-    )
+    @property
+    def limits(self) -> MotionLimits:
+        """Largest speeds and accelerations."""
+        return self.drive.limits
 
 
 def robot_geoms(model: mujoco.MjModel) -> list[int]:
@@ -101,17 +71,29 @@ def robot_geoms(model: mujoco.MjModel) -> list[int]:
     return [int(i) for i in np.flatnonzero(own[model.geom_bodyid])]
 
 
-def _height(model: mujoco.MjModel) -> float:
-    """Return the height of the highest point of the robot [m]."""
+def _sizes(named: NamedModel, base: int) -> tuple[float, float]:
+    """Return radius and height of the robot [m]."""
+    model = named.model
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    top = [0.0]
-    for geom in robot_geoms(model):
-        axes = np.abs(data.geom_xmat[geom].reshape(3, 3))
-        centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
-        middle = data.geom_xpos[geom] + data.geom_xmat[geom].reshape(3, 3) @ centre
-        top.append(float(middle[2] + axes[2] @ half))
-    return max(top)
+    geoms = robot_geoms(model)
+    solid = [g for g in geoms if model.geom_contype[g] or model.geom_conaffinity[g]]
+    radius = named.find_number("radius") or perimeter(model, data, solid, data.xpos[base])
+    if not radius > 0:
+        raise named.error(
+            " lacks its radius: add <custom><numeric name='radius' data=.../></custom>, or geoms "
+            "that collide"
+        )
+    return radius, highest(model, data, geoms)
+
+
+def sees_behind(rings: tuple[RangeRing, ...]) -> bool:
+    """Return whether range sensors look to where a robot drives backwards."""
+    cones = [(bearing, ring.half_angle) for ring in rings for bearing in ring.bearings]
+    return all(
+        any(abs(np.angle(np.exp(1j * (way - axis)))) <= half + _GAP for axis, half in cones)
+        for way in _BEHIND
+    )
 
 
 def describe_robot(model: mujoco.MjModel, name: str) -> RobotDescription:
@@ -120,25 +102,29 @@ def describe_robot(model: mujoco.MjModel, name: str) -> RobotDescription:
     Raises
     ------
     ModelError
-        An actuator, joint, encoder, range sensor or number that is missing or makes no sense:
-        names it and lists what there is or says what it must be.
+        An actuator, joint, range sensor or number that is missing or makes no sense: names it and
+        lists what there is or says what it must be.
     """
-    _require(model, name, mujoco.mjtObj.mjOBJ_ACTUATOR, ACTUATORS)
-    _require(model, name, mujoco.mjtObj.mjOBJ_JOINT, JOINTS)
-    _require(model, name, mujoco.mjtObj.mjOBJ_SENSOR, ENCODERS)
-    for joint in JOINTS:
-        kind = "slide" if joint.startswith("base_") else "hinge"
-        if model.joint(PREFIX + joint).type[0] != getattr(mujoco.mjtJoint, f"mjJNT_{kind.upper()}"):
-            raise ModelError(f"robot {name!r}: joint {joint!r} must be a {kind}")
-    radius = _number(model, name, "radius")
-    rays, rings = index_rays(model, name, radius, lambda key: _number(model, name, key, 0.0))
+    named = NamedModel(model, name)
+    driven = find_drive(named)
+    footing = find_footing(named, driven.steer)
+    radius, height = _sizes(named, footing.base)
+    mount = footing.base if driven.turret < 0 else int(model.jnt_bodyid[driven.turret])
+    rays, rings = index_rays(named, radius, mount)
+    drive = driven.drive
+    if not isinstance(drive, SynchroDrive):
+        drive = replace(drive, sees_behind=sees_behind(rings))
     touch = np.flatnonzero(model.sensor_type == mujoco.mjtSensor.mjSENS_TOUCH)
     bumpers = [model.sensor(int(i)).name for i in touch]
     return RobotDescription(
         name=name,
         layout=SensorLayout(radius, rings),
-        limits=_limits(model, name),
-        height=_height(model),
+        drive=drive,
+        motors=driven.motors,
+        controls=model.actuator_ctrladr[driven.motors],
+        encoders=driven.encoders,
+        footing=footing,
+        height=height,
         bumpers=tuple(b.removeprefix(PREFIX) for b in bumpers if b.startswith(PREFIX)),
         rays=rays,
     )

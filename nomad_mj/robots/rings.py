@@ -6,16 +6,15 @@ names that nested ``<replicate>`` elements give.
 
 import re
 from collections import defaultdict
-from collections.abc import Callable
 from typing import NamedTuple
 
 import mujoco
 import numpy as np
 
-from nomad_mj.errors import ModelError
+from nomad_mj.robots.naming import PREFIX, NamedModel
 from nomad_mj.types import FloatArray, IntArray, RangeRing
 
-PREFIX = "robot/"  # of everything that belongs to the robot in a compiled scene
+_FARTHEST = 10.0  # [m], where a rangefinder has no cutoff
 _FIELD = mujoco.mjtRayDataField
 # What a ray reports that tells how a surface lies; an ordinary one reports the distance alone.
 SURFACE_DATA = sum(
@@ -65,30 +64,50 @@ def group_rays(names: list[str]) -> dict[str, dict[int, list[int]]]:
     }
 
 
-def _ray_direction(model: mujoco.MjModel, site: int) -> float:
-    """Return the bearing of a site's z axis in its body's frame [rad]."""
-    axis = np.empty(3)
-    mujoco.mju_rotVecQuat(axis, np.array([0.0, 0.0, 1.0]), model.site_quat[site])
-    return float(np.arctan2(axis[1], axis[0]))
+class _Ray(NamedTuple):
+    """Where a ray begins, (x, y) [m], and its bearing [rad], in the frame of the sensors."""
+
+    start: FloatArray
+    bearing: float
 
 
-def _ring(
-    model: mujoco.MjModel, name: str, cones: dict[int, list[int]], minimum: float
-) -> RangeRing:
-    """Return the ring whose cones hold these sensors."""
+def _rays(model: mujoco.MjModel, mount: int, sites: list[int]) -> list[_Ray]:
+    """Return the rays of some sites in the frame of the body `mount`."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    frame, origin = data.xmat[mount].reshape(3, 3), data.xpos[mount]
+    rays: list[_Ray] = []
+    for site in sites:
+        start, axis = model.site_pos[site], np.empty(3)
+        mujoco.mju_rotVecQuat(axis, np.array([0.0, 0.0, 1.0]), model.site_quat[site])
+        if model.site_bodyid[site] != mount:
+            start = (data.site_xpos[site] - origin) @ frame
+            axis = data.site_xmat[site].reshape(3, 3)[:, 2] @ frame
+        rays.append(_Ray(start[:2], float(np.arctan2(axis[1], axis[0]))))
+    return rays
+
+
+def _ring(name: str, cones: list[list[_Ray]], limits: tuple[float, float]) -> RangeRing:
+    """Return the ring of these cones, with the limits of its readings [m]."""
     bearings: list[float] = []
     spread = 0.0
-    for sensors in cones.values():
-        angles = np.array([_ray_direction(model, int(model.sensor_objid[s])) for s in sensors])
+    for rays in cones:
+        angles = np.array([ray.bearing for ray in rays])
         axis = float(np.angle(np.exp(1j * angles).sum()))
         bearings.append(axis)
         spread = max(spread, float(np.abs(np.angle(np.exp(1j * (angles - axis)))).max()))
-    cutoff = float(model.sensor_cutoff[next(iter(cones.values()))[0]])
     if spread < 1e-6:  # single rays, but for rounding: each speaks for the space up to the next
         around = np.sort(bearings)
         gaps = np.diff(around, append=around[0] + 2 * np.pi)
         spread = float(max(gaps.min() / 2, 1e-3)) if len(bearings) > 1 else np.pi / 12
-    return RangeRing(name, tuple(bearings), spread, minimum, cutoff if cutoff > 0 else 10.0)
+    return RangeRing(name, tuple(bearings), spread, *limits)
+
+
+def _outward(ray: _Ray, axis: float) -> float:
+    """Return how far out along its cone's axis a ray begins [m]."""
+    distance = float(np.hypot(*ray.start))
+    along = float(ray.start @ (np.cos(axis), np.sin(axis)))
+    return distance if np.isclose(along, distance, atol=1e-6) else along
 
 
 def reporting_surfaces(model: mujoco.MjModel) -> IntArray:
@@ -97,59 +116,76 @@ def reporting_surfaces(model: mujoco.MjModel) -> IntArray:
     return np.flatnonzero(rangefinder & (model.sensor_intprm[:, 0] == SURFACE_DATA))
 
 
+def _check_mount(named: NamedModel, ring: str, sites: list[int], mount: int) -> None:
+    model = named.model
+    bodies = model.site_bodyid[sites]
+    if (model.body_weldid[bodies] != model.body_weldid[mount]).any():
+        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, mount)
+        raise named.error(
+            f": the sites of {ring!r} must be in the body {name.removeprefix(PREFIX)!r}, or fixed "
+            "to it: their bearings count from its direction"
+        )
+
+
 def index_rays(
-    model: mujoco.MjModel, robot: str, radius: float, number: Callable[[str], float]
+    named: NamedModel, radius: float, mount: int
 ) -> tuple[RayIndex, tuple[RangeRing, ...]]:
     """Return where the rays are, and the rings they make.
 
     Parameters
     ----------
-    model, robot
-        The compiled model and the robot's name, for messages.
+    named : NamedModel
+        The robot.
     radius : float
         Of the robot's perimeter [m].
-    number : callable
-        Gives the robot's custom number of a name, such as ``sonar_min_range``, 0 where it has none.
+    mount : int
+        Body that the range sensors are fixed to.
 
     Raises
     ------
     ModelError
         The robot has no range sensor with a name of the form ``<ring>_<ray>_<cone>``, or one that
-        does not turn with the turret.
+        does not turn with the mount.
     """
-    found = np.flatnonzero(model.sensor_type == mujoco.mjtSensor.mjSENS_RANGEFINDER)
-    sensors = [int(i) for i in found if model.sensor(int(i)).name.startswith(PREFIX)]
+    model = named.model
+    on_site = model.sensor_objtype == mujoco.mjtObj.mjOBJ_SITE
+    rangefinder = model.sensor_type == mujoco.mjtSensor.mjSENS_RANGEFINDER
+    found = np.flatnonzero(rangefinder & on_site).tolist()
+    sensors = [i for i in found if model.sensor(i).name.startswith(PREFIX)]
     names = [model.sensor(i).name.removeprefix(PREFIX) for i in sensors]
     address: list[int] = []
     first: list[int] = []
     rows: list[tuple[float, float, float]] = []
     rings: list[RangeRing] = []
-    turret = int(model.joint(PREFIX + "turret").bodyid[0])
     for ring_name, cones in group_rays(names).items():
-        cones = {cone: [sensors[p] for p in rays] for cone, rays in cones.items()}
-        ring = _ring(model, ring_name, cones, number(f"{ring_name}_min_range"))
-        if ring.min_range >= ring.max_range:
-            raise ModelError(
-                f"robot {robot!r}: {ring_name}_min_range {ring.min_range:g} m must be below the "
-                f"cutoff of its rangefinders, {ring.max_range:g} m"
-            )
+        members = [[sensors[p] for p in rays] for rays in cones.values()]
+        sites = [[int(model.sensor_objid[s]) for s in rays] for rays in members]
+        _check_mount(named, ring_name, [site for own in sites for site in own], mount)
+        rays = [_rays(model, mount, own) for own in sites]
+        ring = _ring(ring_name, rays, _limits(named, ring_name, members[0][0]))
         rings.append(ring)
-        for rays in cones.values():
-            if any(model.site_bodyid[model.sensor_objid[s]] != turret for s in rays):
-                raise ModelError(
-                    f"robot {robot!r}: the sites of {ring_name!r} must be in the body of the joint "
-                    "'turret', from whose angle their bearings are counted"
-                )
+        for sensors_of_cone, own, axis in zip(members, rays, ring.bearings, strict=True):
             first.append(len(address))
-            address.extend(int(model.sensor_adr[s]) for s in rays)
-            site = model.site_pos[int(model.sensor_objid[rays[0]])]
-            rows.append((radius - float(np.hypot(*site[:2])), ring.min_range, ring.max_range))
+            address.extend(int(model.sensor_adr[s]) for s in sensors_of_cone)
+            rows.append((radius - _outward(own[0], axis), ring.min_range, ring.max_range))
     if not rings:
-        raise ModelError(
-            f"robot {robot!r} has no range sensor: add rangefinders named <ring>_<ray>_<cone>, "
-            f"such as sonar_0_0; rangefinders it has: {', '.join(names) or 'none'}"
+        raise named.error(
+            " has no range sensor: add rangefinders named <ring>_<ray>_<cone>, such as sonar_0_0, "
+            f"or a ring in its data sheet; rangefinders it has: {', '.join(names) or 'none'}"
         )
     offset, minimum, maximum = np.array(rows).T
     specular = np.flatnonzero(np.isin(address, model.sensor_adr[reporting_surfaces(model)]))
-    rays = RayIndex(np.array(address), np.array(first), offset, minimum, maximum, specular)
-    return rays, tuple(rings)
+    index = RayIndex(np.array(address), np.array(first), offset, minimum, maximum, specular)
+    return index, tuple(rings)
+
+
+def _limits(named: NamedModel, ring: str, sensor: int) -> tuple[float, float]:
+    """Return the least and the greatest reading of a ring [m]."""
+    cutoff = float(named.model.sensor_cutoff[sensor])
+    least, most = named.number(f"{ring}_min_range", 0.0), cutoff if cutoff > 0 else _FARTHEST
+    if least >= most:
+        raise named.error(
+            f": {ring}_min_range {least:g} m must be below the cutoff of its rangefinders, "
+            f"{most:g} m"
+        )
+    return least, most

@@ -9,7 +9,7 @@ import shapely
 
 from nomad_mj.errors import ModelError
 from nomad_mj.rooms.room import HEIGHT, Box, Cylinder, Polygon, Room, Shape
-from nomad_mj.rooms.values import number, numbers, read_yaml, refuse_others
+from nomad_mj.values import number, numbers, read_yaml, refuse_others
 
 WALL = 0.15
 """How thick walls are [m]."""
@@ -33,7 +33,7 @@ def read_plan(path: Path) -> Room:
         A file that is missing or no plan, a value that makes no sense.
     """
     what = f"room plan {str(path)!r}"
-    held = read_yaml(path)
+    held = read_yaml(path, "room")
     refuse_others(held, _KEYS, what)
     if ("size" in held) == ("outline" in held):
         raise ModelError(

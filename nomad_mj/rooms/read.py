@@ -10,7 +10,7 @@ from nomad_mj.rooms.places import furnish
 from nomad_mj.rooms.plan_file import read_plan
 from nomad_mj.rooms.room import Room
 from nomad_mj.rooms.ros_map import read_floor_image, read_ros_map
-from nomad_mj.rooms.values import read_yaml
+from nomad_mj.values import read_yaml
 
 YAML = (".yaml", ".yml")
 
@@ -47,7 +47,7 @@ def read_room(
     if within <= 0 or math.isnan(within):
         raise ConfigError(f"within {within:g}: must be above 0 m")
     _check(path, resolution)
-    if resolution is None and "image" not in read_yaml(path):
+    if resolution is None and "image" not in read_yaml(path, "room"):
         return furnish(read_plan(path), goal, starts)
     if resolution is None:
         grid = read_ros_map(path)

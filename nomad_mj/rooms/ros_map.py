@@ -10,8 +10,8 @@ from nomad_mj.errors import ModelError
 from nomad_mj.rooms.images import read_image
 from nomad_mj.rooms.occupancy import FREE, OCCUPIED, UNKNOWN, Occupancy
 from nomad_mj.rooms.rectangles import Mask
-from nomad_mj.rooms.values import number, numbers, read_yaml
 from nomad_mj.types import FloatArray
+from nomad_mj.values import number, numbers, read_yaml
 
 MODES = ("trinary", "scale", "raw")
 _OCCUPIED, _FREE = 0.65, 0.25  # defaults of the map server in ROS 2
@@ -33,7 +33,7 @@ def read_ros_map(path: Path) -> Occupancy:
         A file that is missing or no map, a value that makes no sense.
     """
     what = f"map {str(path)!r}:"
-    held = read_yaml(path)
+    held = read_yaml(path, "room")
     for key in ("image", "resolution"):
         if key not in held:
             raise ModelError(f"{what} has no {key!r}; a map needs image and resolution")

@@ -1,4 +1,4 @@
-"""The motor task: drive the three motors at 20 Hz on sensor readings."""
+"""The motor task: drive the motors at 20 Hz on sensor readings."""
 
 import math
 from collections import OrderedDict
@@ -11,13 +11,12 @@ from dm_env import specs
 
 from nomad_mj.errors import ConfigError
 from nomad_mj.movers import Movers
-from nomad_mj.robots import ACTUATORS, PREFIX
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.tasks.noise import OdometryNoise, RangeNoise, RangeNoiseStream
 from nomad_mj.tasks.odometry import Odometry
 from nomad_mj.tasks.physics import NavigationPhysics
 from nomad_mj.tasks.starts import Start, resolve_start
-from nomad_mj.types import FloatArray
+from nomad_mj.types import FloatArray, Travel
 
 REWARD_MARGIN = 5.0  # [m] from the goal at which the reward has fallen to 0.1
 
@@ -50,9 +49,10 @@ class MotorTask(control.Task):
     """Reach the goal with motor velocities as actions.
 
     Observations, all float64: one array of ranges [m] for each ring, under the ring's name;
-    ``bumpers`` (0 or 1); ``encoders`` (distance driven in this control step [m], steer and turret
-    angle [rad]); ``odometry`` (x, y [m], heading of the wheels and of the turret [rad]); ``goal``,
-    the vector from the odometry's position to the goal [m]. The reward is 1 at the goal and falls
+    ``bumpers`` (0 or 1); ``encoders`` (way of each motor in this control step [m] or its angle
+    [rad], in the order of the drive's `encoders`); ``odometry`` (x, y [m], heading of the robot,
+    or of its wheels where these are steered, and of its range sensors [rad]); ``goal``, the vector
+    from the odometry's position to the goal [m]. The reward is 1 at the goal and falls
     smoothly with the true distance to it.
 
     Parameters
@@ -70,6 +70,8 @@ class MotorTask(control.Task):
         Where the present episode started.
     ranges : array (layout.count,)
         The range readings of this control step, all rings concatenated [m].
+    travel : Travel
+        What the encoders tell of this control step, without drift.
     movers : Movers or None
         Where the goal and the obstacles that move are now; None if nothing moves.
     random : numpy.random.Generator
@@ -95,9 +97,7 @@ class MotorTask(control.Task):
         for ring in scene.robot.layout.rings:
             self._slices.append((ring.name, first, first + len(ring.bearings)))
             first += len(ring.bearings)
-        model = scene.model
-        self._motors = np.array([model.actuator(PREFIX + name).id for name in ACTUATORS])
-        self._limits: FloatArray = model.actuator_ctrlrange[self._motors]
+        self._limits: FloatArray = scene.model.actuator_ctrlrange[scene.robot.controls]
         self._goal: FloatArray = scene.arena.goal
         self._goal_xy: tuple[float, float] = tuple(self._goal.tolist())
         radius = scene.robot.layout.radius
@@ -138,6 +138,7 @@ class MotorTask(control.Task):
         self._odometry = Odometry(start, config.odometry_noise, odometry)
         self._observation: OrderedDict[str, FloatArray] | None = None
         self.ranges: FloatArray = np.zeros(layout.count)
+        self.travel = Travel(0.0, 0.0, start.heading, start.heading)
         self.start_pose = start
 
     def initialize_episode(self, physics: NavigationPhysics) -> None:
@@ -145,8 +146,8 @@ class MotorTask(control.Task):
         self._begin(physics)
 
     def before_step(self, action: Any, physics: NavigationPhysics) -> None:
-        """Command the motors: translate [m/s], steer [rad/s], turret [rad/s]."""
-        physics.command(self._motors, action)
+        """Command the motors in the order of the drive's: see `Drive.motors`."""
+        physics.command(action)
         self._observation = None
         if self.movers is not None:
             self.movers.advance(CONTROL_TIMESTEP, physics.pose()[:2])
@@ -160,10 +161,10 @@ class MotorTask(control.Task):
             physics.move_bodies(movers.rows, movers.body_places())
 
     def action_spec(self, physics: NavigationPhysics) -> specs.BoundedArray:
-        """Return the motors' limits, (3,)."""
+        """Return the motors' limits, (M,)."""
         low, high = self._limits.T
-        name = "\t".join(ACTUATORS)
-        return specs.BoundedArray((len(ACTUATORS),), np.float64, low, high, name=name)
+        motors = self.scene.robot.drive.motors
+        return specs.BoundedArray((len(motors),), np.float64, low, high, name="\t".join(motors))
 
     def observation_spec(self, physics: NavigationPhysics) -> "OrderedDict[str, specs.Array]":
         """Return the shapes and limits of the observations."""
@@ -176,7 +177,8 @@ class MotorTask(control.Task):
         result["bumpers"] = specs.BoundedArray(
             (len(robot.bumpers),), np.float64, 0.0, 1.0, name="bumpers"
         )
-        for name, size in (("encoders", 3), ("odometry", 4), ("goal", 2)):
+        encoders = len(robot.drive.encoders)
+        for name, size in (("encoders", encoders), ("odometry", 4), ("goal", 2)):
             result[name] = specs.Array((size,), np.float64, name=name)
         return result
 
@@ -192,7 +194,9 @@ class MotorTask(control.Task):
         np.minimum(np.maximum(ranges, rays.minimum, out=ranges), rays.maximum, out=ranges)
         self.ranges = ranges
         encoders = physics.encoders()
-        self._odometry.update(*encoders.tolist())
+        travel = self.scene.robot.drive.travel(encoders, self.travel.heading)
+        self._odometry.update(travel)
+        self.travel = travel
         odometry = self._odometry.reading()
         result: OrderedDict[str, FloatArray] = OrderedDict()
         for name, first, last in self._slices:

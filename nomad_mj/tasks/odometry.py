@@ -5,11 +5,11 @@ import math
 import numpy as np
 
 from nomad_mj.tasks.noise import OdometryNoise
-from nomad_mj.types import FloatArray, Pose
+from nomad_mj.types import FloatArray, Pose, Travel
 
 
 class Odometry:
-    """Dead reckoning of a synchro drive, apart from the true pose.
+    """Dead reckoning, apart from the true pose.
 
     Parameters
     ----------
@@ -25,26 +25,32 @@ class Odometry:
         self._noise = noise
         self._rng = rng
         self._drifts = noise.distance > 0 or noise.heading > 0
-        self.x, self.y, self.heading, self.turret = start.x, start.y, start.heading, 0.0
+        self.x, self.y, self.heading, self.sensors = start.x, start.y, start.heading, 0.0
         self._drift = 0.0
 
-    def update(self, distance: float, steer: float, turret: float) -> None:
-        """Take in a control step: distance driven [m], wheels' and turret's angle [rad]."""
-        if self._drifts and distance:
+    def update(self, travel: Travel) -> None:
+        """Take in a control step as the encoders tell it."""
+        forward, sideways, heading, sensors = travel
+        if self._drifts and (forward or sideways):
             error, turn = self._rng.normal(size=2).tolist()
-            root = math.sqrt(abs(distance))  # variances add up, whatever the length of a step
-            distance += self._noise.distance * error * root
+            way = math.hypot(forward, sideways)
+            root = math.sqrt(way)  # variances add up, whatever the length of a step
+            share = 1.0 + self._noise.distance * error * root / way
+            forward, sideways = share * forward, share * sideways
             self._drift += self._noise.heading * turn * root
-        heading = steer + self._drift
+        heading += self._drift
         middle = (self.heading + heading) / 2
-        self.x += distance * math.cos(middle)
-        self.y += distance * math.sin(middle)
+        self.x += forward * math.cos(middle)
+        self.y += forward * math.sin(middle)
+        if sideways:
+            self.x -= sideways * math.sin(middle)
+            self.y += sideways * math.cos(middle)
         self.heading = heading
-        self.turret = turret + self._drift
+        self.sensors = sensors + self._drift
 
     def reading(self) -> FloatArray:
-        """Return x, y [m], heading of the wheels and of the turret [rad], (4,)."""
-        reading = np.array([self.x, self.y, self.heading, self.turret])
+        """Return x, y [m], heading of the robot and of its range sensors [rad], (4,)."""
+        reading = np.array([self.x, self.y, self.heading, self.sensors])
         if self._noise.position > 0:
             reading[:2] += self._rng.uniform(-self._noise.position, self._noise.position, 2)
         return reading

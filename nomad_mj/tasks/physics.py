@@ -8,7 +8,8 @@ import numpy as np
 from dm_control.mujoco import Physics, wrapper
 from dm_control.rl.control import PhysicsError
 
-from nomad_mj.robots import ENCODERS, JOINTS, PREFIX, RobotDescription
+from nomad_mj.motion import SynchroDrive
+from nomad_mj.robots import PREFIX, RobotDescription
 from nomad_mj.scene import Scene
 from nomad_mj.types import FloatArray, IntArray, Pose
 
@@ -72,21 +73,28 @@ class NavigationPhysics(Physics):
         self._ray_buffer = np.empty(len(rays.address))
         # Behind the distance: direction of the ray (3), normal of the surface (3).
         self._surfaces = rays.address[rays.specular, None] + np.arange(1, 7)
-        joints = [model.joint(PREFIX + name) for name in JOINTS]
         self._qpos: FloatArray = data.qpos
         self._ctrl: FloatArray = data.ctrl
-        self._pose_address = np.array([int(joint.qposadr[0]) for joint in joints[:3]])
-        servo = model.actuator(PREFIX + "steer")
-        self._steer_servo = int(servo.actadr[0])  # -1 where the servo has no memory
-        belts = (model.eq_type == mujoco.mjtEq.mjEQ_JOINT) & (model.eq_obj2id == joints[2].id)
-        self._wheels: IntArray = model.jnt_qposadr[model.eq_obj1id[belts]]
+        self._controls = self.robot.controls
         touch = [model.sensor(PREFIX + name) for name in self.robot.bumpers]
         self._touch = _samples(model, [int(s.id) for s in touch])
-        self._speed = _samples(model, [int(model.sensor(PREFIX + "translate_encoder").id)])[:, 0]
-        self._timestep = float(model.opt.timestep)
-        encoders = [model.sensor(PREFIX + name) for name in ENCODERS]
-        self._encoders = np.array([int(sensor.adr[0]) for sensor in encoders])
+        encoders = self.robot.encoders
+        self._speed_now: IntArray = model.sensor_adr[encoders.speeds]
+        self._speeds = _samples(model, encoders.speeds.tolist()).T
+        self._scales: list[float] = (encoders.scales * float(model.opt.timestep)).tolist()
+        self._bind_steering()
         mujoco.mj_step1(model, data)  # dm_control has just computed a copy with its motors off
+
+    def _bind_steering(self) -> None:
+        """Look up what must follow the heading of a synchro drive when it is placed."""
+        model = self._raw[0]
+        heading = self.robot.footing.heading
+        self._servo, self._wheels = -1, np.empty(0, dtype=np.intp)
+        if isinstance(self.robot.drive, SynchroDrive):
+            steer = int(np.flatnonzero(model.jnt_qposadr == heading)[0])
+            self._servo = int(model.actuator_actadr[self.robot.motors[1]])
+            belts = (model.eq_type == mujoco.mjtEq.mjEQ_JOINT) & (model.eq_obj2id == steer)
+            self._wheels = model.jnt_qposadr[model.eq_obj1id[belts]]
 
     def reset(self, keyframe_id: int | None = None) -> None:
         """Set the simulation to its initial state, without computing any sensor.
@@ -111,16 +119,16 @@ class NavigationPhysics(Physics):
             names = [kind for kind, count in zip(kinds, self._warnings, strict=False) if count]
             raise PhysicsError(f"the simulation diverged at {data.time:.3f} s: {', '.join(names)}")
 
-    def command(self, motors: IntArray, speeds: Any) -> None:
-        """Set the motors of these numbers to speeds, as many [m/s], [rad/s]."""
-        self._ctrl[motors] = speeds
+    def command(self, speeds: Any) -> None:
+        """Set the motors, in the order of the drive's, to speeds [m/s], [rad/s] (or angles)."""
+        self._ctrl[self._controls] = speeds
 
     def place(self, pose: Pose) -> None:
-        """Put the robot at `pose`, its wheels along the heading, its turret looking along +x."""
-        self.data.qpos[self._pose_address] = pose
+        """Put the robot at `pose`; a turret looks along +x."""
+        self.robot.footing.place(self.data.qpos, pose)
         self.data.qpos[self._wheels] = pose.heading  # else their belts would wrench them there
-        if self._steer_servo >= 0:  # else the servo would turn the wheels back to zero
-            self.data.act[self._steer_servo] = pose.heading
+        if self._servo >= 0:  # else the servo would turn the wheels back to zero
+            self.data.act[self._servo] = pose.heading
 
     def move_bodies(self, rows: IntArray, places: FloatArray) -> None:
         """Put mocap bodies, given their rows (n,), at places (n, 2) [m]; the next step sees it."""
@@ -152,14 +160,18 @@ class NavigationPhysics(Physics):
         return np.logical_or.reduce(forces, axis=0).astype(np.float64)
 
     def encoders(self) -> FloatArray:
-        """Return distance driven since the last control step [m], steer and turret angle [rad]."""
-        speed, steer, turret = self._sensordata.take(self._encoders).tolist()
-        driven = (sum(self._history.take(self._speed).tolist()) + speed) * self._timestep
-        return np.array([driven, steer, turret])
+        """Return what the encoders read: ways since the last control step [m], angles [rad]."""
+        now = self._sensordata.take(self._speed_now).tolist()
+        before = self._history.take(self._speeds).tolist()
+        ways = [
+            (sum(past) + last) * scale
+            for past, last, scale in zip(before, now, self._scales, strict=True)
+        ]
+        return np.array(ways + self._qpos.take(self.robot.encoders.angles).tolist())
 
     def pose(self) -> Pose:
-        """Return the true pose: where the base is and where the wheels point."""
-        return Pose(*self._qpos.take(self._pose_address).tolist())
+        """Return the true pose: where the base is and where it, or its wheels, point."""
+        return self.robot.footing.pose(self._qpos)
 
 
 def _samples(model: mujoco.MjModel, sensors: list[int]) -> IntArray:

@@ -5,7 +5,6 @@ import math
 import mujoco
 import numpy as np
 
-from nomad_mj.robots import JOINTS, PREFIX
 from nomad_mj.scene import ROOM_PREFIX, Scene
 from nomad_mj.types import FloatArray
 
@@ -55,11 +54,6 @@ def fixed_camera(scene: Scene, name: str) -> mujoco.MjvCamera:
     return camera
 
 
-def base_body(model: mujoco.MjModel) -> int:
-    """Return the body that the robot's base joints move."""
-    return int(model.jnt_bodyid[model.joint(PREFIX + JOINTS[0]).id])
-
-
 class ChaseCamera:
     """Follows behind the robot's course, swings gently, and rises over walls in its way.
 
@@ -79,7 +73,7 @@ class ChaseCamera:
         self._start = scene.robot.layout.radius + 0.05
         self.camera = _free_camera()
         self.camera.distance = _DISTANCE
-        self._base = base_body(scene.model)
+        self._base = scene.robot.footing.base
         self._azimuth = self._speed = 0.0
         self._climb = math.radians(_CLIMBS[0])
 

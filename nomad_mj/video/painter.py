@@ -6,7 +6,6 @@ import numpy as np
 from nomad_mj.arenas import goal_site
 from nomad_mj.scene import Scene
 from nomad_mj.types import FloatArray, IntArray
-from nomad_mj.video.cameras import base_body
 from nomad_mj.video.layout import Pane
 from nomad_mj.video.marks import Marks, Sheet
 from nomad_mj.video.palette import GREEN, INK, PAPER, RGB, range_colours
@@ -60,7 +59,7 @@ class Painter:
         self._unit = unit
         self._rays = scene.robot.rays
         self._sites = _axis_sites(scene)
-        self._base = base_body(scene.model)
+        self._base = scene.robot.footing.base
         self._shade = Sheet()  # nothing casts a shadow of its own
         for grow in (1.35, 1.16):
             radius = grow * scene.robot.layout.radius

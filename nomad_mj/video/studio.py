@@ -12,7 +12,7 @@ from nomad_mj.arenas import goal_site
 from nomad_mj.geometry import direction
 from nomad_mj.scene import Scene
 from nomad_mj.types import FloatArray
-from nomad_mj.video.cameras import ChaseCamera, base_body, fixed_camera
+from nomad_mj.video.cameras import ChaseCamera, fixed_camera
 from nomad_mj.video.canvas import Canvas, Image
 from nomad_mj.video.caption import Caption, CaptionBar
 from nomad_mj.video.cards import Card
@@ -66,7 +66,7 @@ class Studio:
         self.caption: Caption | None = None
         self._bar = CaptionBar(self.layout.caption, self.layout.unit, speed)
         self._inset: Card | None = None
-        self._base = base_body(scene.model)
+        self._base = scene.robot.footing.base
         self._goal = goal_site(scene.model)
         self._chase = ChaseCamera(scene)
         self._course = math.nan

@@ -26,8 +26,8 @@ def test_numbers_are_read_from_the_file(ring_robot: RingRobot) -> None:
     more = '<custom><numeric name="steer_max_acceleration" data="1.25"/>'
     robot = build_scene("empty_room", ring_robot([0], ("<custom>", more))).robot
     assert robot.layout.radius == 0.2
-    assert robot.limits.translate == 0.5 and robot.limits.steer == robot.limits.turret == 1.0
-    assert robot.limits.steer_acceleration == 1.25
+    assert robot.limits.translate == 0.5 and robot.limits.turn == 1.0
+    assert robot.limits.turn_acceleration == 1.25
     assert robot.height == pytest.approx(0.15)
     assert robot.bumpers == ("bumper_0",)
 
@@ -45,24 +45,22 @@ BAD = {
         "go, steer",
     ),
     "no turret": ('<velocity name="turret"', '<velocity name="head"', "actuator 'turret'", "head"),
-    "no joint": ('name="base_y"', 'name="y"', "lacks the joint 'base_y'", "base_x, y, steer"),
-    "no encoder": ("steer_encoder", "angle", "lacks the sensor 'steer_encoder'", "angle"),
+    "no joint": ('<joint name="base_y" type="slide" axis="0 1 0"/>', "", "'base'", "free joint"),
     "no rays": (
         '<rangefinder name="infrared_',
         '<rangefinder name="eye',
         "no range sensor",
         "eye0",
     ),
-    "no radius": ('name="radius"', 'name="size"', "lacks its radius", "<numeric name='radius'"),
     "radius 0": ('data="0.2"', 'data="0"', "radius is 0", "above 0"),
     "radius < 0": ('data="0.2"', 'data="-2"', "radius is -2", "above 0"),
     "no limits": (' ctrlrange="-0.5 0.5"', "", "actuator 'translate'", "needs a ctrlrange"),
-    "ball": ('type="slide" axis="1 0 0"', 'type="ball"', "joint 'base_x'", "must be a slide"),
+    "ball": ('type="slide" axis="1 0 0"', 'type="ball"', "'base'", "slide joints along x and y"),
     "fixed ring": (
         '<joint name="turret" axis="0 0 1"/>',
         '<joint name="turret" axis="0 0 1"/></body><body name="fixed" pos="0 0 0.3">',
         "the sites of 'infrared'",
-        "the joint 'turret'",
+        "in the body 'turret'",
     ),
     "least": ("<custom>", '<custom><numeric name="infrared_min_range" data="2"/>', "2 m", "1.5 m"),
 }

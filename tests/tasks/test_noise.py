@@ -11,7 +11,7 @@ from nomad_mj.errors import ConfigError
 from nomad_mj.tasks import OdometryNoise, RangeNoise
 from nomad_mj.tasks.noise import RangeNoiseKind, RangeNoiseStream
 from nomad_mj.tasks.odometry import Odometry
-from nomad_mj.types import FloatArray, Pose
+from nomad_mj.types import FloatArray, Pose, Travel
 
 
 def draws(noise: RangeNoise, rounds: int = 3000, sensors: int = 32, seed: int = 0) -> FloatArray:
@@ -93,7 +93,7 @@ def drive(odometry: Odometry, start: Pose, path: list[tuple[float, float]]) -> F
     heading = start.heading
     for distance, turn in path:
         heading += turn
-        odometry.update(distance, heading, 0.0)
+        odometry.update(Travel(distance, 0.0, heading, 0.0))
     return odometry.reading()
 
 
@@ -120,7 +120,7 @@ def test_driving_a_way_back_leads_home(path: list[tuple[float, float]], heading:
     headings = [heading := heading + turn for _, turn in path]
     drive(odometry, start, path)
     for (distance, _), before in zip(path[::-1], [*headings[-2::-1], angle], strict=False):
-        odometry.update(-distance, before, 0.0)
+        odometry.update(Travel(-distance, 0.0, before, 0.0))
     np.testing.assert_allclose(odometry.reading()[:2], [1, 2], atol=1e-9)
 
 
@@ -130,7 +130,7 @@ def ends(noise: OdometryNoise, metres: float, parts: int, robots: int = 800) -> 
     for seed in range(robots):
         odometry = Odometry(start, noise, np.random.default_rng(seed))
         for _ in range(parts):
-            odometry.update(metres / parts, 0.0, 0.0)
+            odometry.update(Travel(metres / parts, 0.0, 0.0, 0.0))
         readings.append(odometry.reading())
     return np.array(readings)
 
@@ -158,9 +158,9 @@ def test_the_distance_errs_with_the_root_of_the_way_whatever_the_step(
 def test_the_turret_drifts_with_the_robot_and_nothing_drifts_at_rest() -> None:
     odometry = Odometry(Pose(0, 0, 1), OdometryNoise(0.1, 0.1, 0.0), np.random.default_rng(0))
     for _ in range(50):
-        odometry.update(0.0, 1.0, 0.3)
+        odometry.update(Travel(0.0, 0.0, 1.0, 0.3))
     np.testing.assert_array_equal(odometry.reading(), [0, 0, 1, 0.3])
-    odometry.update(0.5, 1.0, 0.3)
+    odometry.update(Travel(0.5, 0.0, 1.0, 0.3))
     _, _, heading, turret = odometry.reading()
     assert heading - 1.0 == pytest.approx(turret - 0.3) and heading != 1.0
 

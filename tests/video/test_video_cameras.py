@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nomad_mj.scene import Scene, build_scene
-from nomad_mj.video.cameras import ChaseCamera, base_body, fixed_camera
+from nomad_mj.video.cameras import ChaseCamera, fixed_camera
 from nomad_mj.video.canvas import sees_sky
 
 ROOM = """
@@ -92,7 +92,7 @@ def test_the_chase_camera_looks_at_the_robot_from_behind(scene: Scene) -> None:
     data = place(scene, 4.0, 2.0)
     chase = ChaseCamera(scene)
     chase.cut(data, 0.0)
-    base = data.xpos[base_body(scene.model)]
+    base = data.xpos[scene.robot.footing.base]
     np.testing.assert_allclose(base[:2], [4.0, 2.0])
     assert chase.camera.azimuth == 0 and chase.camera.lookat[0] > base[0]
 

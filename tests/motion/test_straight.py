@@ -1,4 +1,4 @@
-"""Moves of an ideal synchro drive, which does at once what it is told, among ideal walls."""
+"""Straight moves of an ideal robot, which does at once what it is told, among ideal walls."""
 
 import math
 from dataclasses import replace
@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nomad_mj.motion import MotionConfig, Outcome, SynchroMove, ramp_speed
+from nomad_mj.motion import MotionConfig, Outcome, StraightMove, ramp_speed
 from nomad_mj.types import MotionLimits
 
 DT = 0.05
-LIMITS = MotionLimits(0.6, 0.76, 1.05, 0.87, 1.5, 0.87)
+LIMITS = MotionLimits(0.6, 0.76, 1.05, 0.87)
 CONFIG = MotionConfig()
 
 headings = st.floats(-4.0, 4.0)
@@ -21,10 +21,8 @@ motors = st.builds(
     MotionLimits,
     translate=st.floats(0.1, 2.0),
     translate_acceleration=st.floats(0.2, 3.0),
-    steer=st.floats(0.3, 3.0),
-    steer_acceleration=st.floats(0.3, 5.0),
-    turret=st.just(1.0),
-    turret_acceleration=st.just(1.0),
+    turn=st.floats(0.3, 3.0),
+    turn_acceleration=st.floats(0.3, 5.0),
 )
 
 
@@ -42,7 +40,7 @@ class Drive:
         config: MotionConfig = CONFIG,
         bumps: frozenset[int] = frozenset(),
     ) -> None:
-        self.move = SynchroMove(heading, length, wheels, motors, config, DT)
+        self.move = StraightMove(heading, length, wheels, motors, config, DT)
         self.heading, self.wheels = heading, wheels
         self.progress, self.farthest, self.time = 0.0, 0.0, 0.0
         self.commands: list[tuple[float, float]] = [(0.0, 0.0)]
@@ -73,7 +71,7 @@ def assert_gentle(drive: Drive, motors: MotionLimits) -> None:
     speeds, steers = zip(*drive.commands, strict=True)
     for values, top, acceleration in (
         (speeds, motors.translate, motors.translate_acceleration),
-        (steers, motors.steer, motors.steer_acceleration),
+        (steers, motors.turn, motors.turn_acceleration),
     ):
         assert max(map(abs, values)) <= top + 1e-9
         changes = [abs(b - a) for a, b in pairwise(values)]
@@ -129,13 +127,13 @@ def test_a_move_out_of_time_comes_to_rest_gently(
     assert_gentle(drive, motors)
     assert drive.time < config.longest
     stopping = motors.translate / motors.translate_acceleration
-    turning = motors.steer / motors.steer_acceleration
+    turning = motors.turn / motors.turn_acceleration
     assert drive.time <= time_out + max(stopping, turning) + 3 * DT
     assert max(map(abs, drive.commands[-1])) < 0.02
 
 
 def test_a_robot_that_never_stands_still_is_given_up() -> None:
-    move = SynchroMove(0.0, 0.5, 0.0, LIMITS, CONFIG, DT)
+    move = StraightMove(0.0, 0.5, 0.0, LIMITS, CONFIG, DT)
     steps = 0
     while not move.done:
         move.command(0.01 * (-1) ** steps, 0.0, math.inf, False)

@@ -10,6 +10,7 @@ import yaml
 from nomad_mj.errors import ModelError
 
 _LARGEST = 1_000_000  # bytes of a YAML file
+_EXAMPLES = {"room": "image: map.pgm", "robot": "drive: differential"}
 
 
 def number(value: Any, what: str, low: float = -1e6, high: float = 1e6) -> float:
@@ -44,15 +45,15 @@ def refuse_others(given: Mapping[Any, Any], known: tuple[str, ...], what: str) -
             raise ModelError(f"{what} knows no {_short(key)}; there are: {', '.join(known)}")
 
 
-def read_yaml(path: Path) -> dict[Any, Any]:
-    """Return the mapping that a YAML file holds.
+def read_yaml(path: Path, kind: str) -> dict[Any, Any]:
+    """Return the mapping that a YAML file holds; `kind` says of what it is, for messages.
 
     Raises
     ------
     ModelError
         It cannot be read, is no YAML, or holds something else.
     """
-    what = f"room file {str(path)!r}"
+    what = f"{kind} file {str(path)!r}"
     try:
         if path.stat().st_size > _LARGEST:
             raise ModelError(f"{what} is larger than {_LARGEST // 1_000_000} MB; is it YAML?")
@@ -63,7 +64,9 @@ def read_yaml(path: Path) -> dict[Any, Any]:
         reason = " ".join(str(error).split())
         raise ModelError(f"{what} is not valid YAML: {reason[:200]}") from None
     if not isinstance(held, dict):
-        raise ModelError(f"{what} must hold keys and values, such as image: map.pgm")
+        raise ModelError(
+            f"{what} must hold keys and values, such as {_EXAMPLES.get(kind, 'name: 1')}"
+        )
     return held
 
 

@@ -1,0 +1,181 @@
+"""Make a robot's file fit to be attached: what its data sheet says becomes names and numbers in it.
+
+So that everything after this reads the compiled model alone, and a file that keeps to the names
+needs no data sheet.
+"""
+
+import math
+
+import mujoco
+import numpy as np
+
+from nomad_mj.errors import ModelError
+from nomad_mj.robots.sheet import MadeRing, Sheet
+
+_UNRULED = ("steer", "turret")  # motors whose angle is read, not their way
+
+
+def adopt(spec: mujoco.MjSpec, sheet: Sheet, robot: str) -> None:
+    """Change a robot's specification so that it can be attached and understood.
+
+    Its own floor, lights, sky and keyframes go: the scene has these.
+
+    Parameters
+    ----------
+    spec : mujoco.MjSpec
+        Of the robot alone; changed in place.
+    sheet : Sheet
+        What its data sheet says.
+    robot : str
+        Its name, for messages.
+
+    Raises
+    ------
+    ModelError
+        The data sheet names an element that the file has not.
+    """
+    _undress(spec)
+    _stand_at_origin(spec)
+    for name in _rename_motors(spec, sheet, robot):
+        _encode(spec, name)
+    for name, value in sheet.numbers.items():
+        for old in [n for n in spec.numerics if n.name == name]:
+            spec.delete(old)
+        spec.add_numeric(name=name, data=[value], size=1)
+    for name, text in (("drive", sheet.drive), ("base", sheet.base)):
+        if text:
+            spec.add_text(name=name, data=text)
+    if sheet.base and sheet.base not in [body.name for body in spec.bodies]:
+        raise _missing(robot, "body", sheet.base, [body.name for body in spec.bodies])
+    for ring, made in sheet.rings.items():
+        if isinstance(made, MadeRing):
+            _make_ring(spec, ring, made, robot)
+        else:
+            _rename_ring(spec, ring, made, robot)
+
+
+def _missing(robot: str, what: str, name: str, there: list[str]) -> ModelError:
+    """Return the error about an element that the data sheet names and the file has not."""
+    known = [other for other in there if other and other != "world"]
+    listed = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "") if known else "none"
+    return ModelError(f"robot {robot!r} has no {what} {name!r}; there are: {listed}")
+
+
+def _undress(spec: mujoco.MjSpec) -> None:
+    """Take away what belongs to a scene and not to a robot."""
+    for geom in list(spec.worldbody.geoms):
+        spec.delete(geom)
+    for light in list(spec.lights):
+        spec.delete(light)
+    for camera in list(spec.worldbody.cameras):
+        spec.delete(camera)
+    for key in list(spec.keys):
+        spec.delete(key)
+    for texture in [t for t in spec.textures if t.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX]:
+        spec.delete(texture)
+
+
+def _stand_at_origin(spec: mujoco.MjSpec) -> None:
+    """Let the robot's coordinates begin at the world's origin, as places of an episode do."""
+    for body in spec.worldbody.bodies:
+        body.pos = [0.0, 0.0, float(body.pos[2])]
+
+
+def _rename_motors(spec: mujoco.MjSpec, sheet: Sheet, robot: str) -> list[str]:
+    """Give the motors of a data sheet the names of their roles; return the names of all."""
+    actuators = {a.name: a for a in spec.actuators if a.name}
+    wheels: list[str] = []
+    for role, names in sheet.motors.items():
+        for number, name in enumerate(names):
+            if name not in actuators:
+                raise _missing(robot, "actuator", name, list(actuators))
+            if role:
+                _rename_actuator(spec, name, role if number == 0 else f"{role}_{number}")
+            else:
+                wheels.append(name)
+    if wheels:
+        spec.add_text(name="motors", data=" ".join(wheels))
+    return [a.name for a in spec.actuators if a.name]
+
+
+def _rename_actuator(spec: mujoco.MjSpec, old: str, new: str) -> None:
+    """Rename an actuator, and where sensors name it."""
+    for actuator in spec.actuators:
+        if actuator.name == new and new != old:
+            actuator.name = f"{new}_of_file"
+    for actuator in spec.actuators:
+        if actuator.name == old:
+            actuator.name = new
+    for sensor in spec.sensors:
+        if sensor.objtype == mujoco.mjtObj.mjOBJ_ACTUATOR and sensor.objname == old:
+            sensor.objname = new
+
+
+def _encode(spec: mujoco.MjSpec, actuator: str) -> None:
+    """Add an encoder to a motor that has none: its speed, from which its way is summed."""
+    kind = mujoco.mjtSensor.mjSENS_ACTUATORVEL
+    there = [s for s in spec.sensors if s.type == kind and s.objname == actuator]
+    if not there and actuator.partition("_")[0] not in _UNRULED:
+        spec.add_sensor(
+            name=f"{actuator}_encoder",
+            type=kind,
+            objtype=mujoco.mjtObj.mjOBJ_ACTUATOR,
+            objname=actuator,
+        )
+
+
+def _rename_ring(spec: mujoco.MjSpec, ring: str, names: tuple[str, ...], robot: str) -> None:
+    """Give rangefinders the names of a ring's single rays."""
+    kind = mujoco.mjtSensor.mjSENS_RANGEFINDER
+    finders = {s.name: s for s in spec.sensors if s.type == kind}
+    for cone, name in enumerate(names):
+        if name not in finders:
+            raise _missing(robot, "rangefinder", name, list(finders))
+        finders[name].name = f"{ring}_{cone:03d}"
+
+
+def _make_ring(spec: mujoco.MjSpec, ring: str, made: MadeRing, robot: str) -> None:
+    """Add the sites and rangefinders of a ring."""
+    body = spec.body(made.body) if made.body else _base(spec)
+    if body is None:
+        raise _missing(robot, "body", made.body, [b.name for b in spec.bodies])
+    for cone, bearing in enumerate(made.bearings):
+        for ray, off in enumerate(np.linspace(-made.half_angle, made.half_angle, made.rays)):
+            angle, axis = math.radians(bearing + (off if made.rays > 1 else 0.0)), bearing
+            place = math.radians(axis)
+            name = f"{ring}_{ray}_{cone:03d}" if made.rays > 1 else f"{ring}_{cone:03d}"
+            body.add_site(
+                name=name,
+                pos=[made.distance * math.cos(place), made.distance * math.sin(place), made.height],
+                quat=_looking(angle),
+                size=[0.003, 0.003, 0.003],
+                group=4,
+            )
+            sensor = spec.add_sensor(
+                name=name,
+                type=mujoco.mjtSensor.mjSENS_RANGEFINDER,
+                objtype=mujoco.mjtObj.mjOBJ_SITE,
+                objname=name,
+            )
+            sensor.cutoff = made.range[1]
+            sensor.intprm = [1, 0, 0]
+    spec.add_numeric(name=f"{ring}_min_range", data=[made.range[0]], size=1)
+
+
+def _base(spec: mujoco.MjSpec) -> "mujoco.MjsBody | None":
+    """Return the body that a ring belongs to where nothing else is said."""
+    given = [t.data for t in spec.texts if t.name == "base"]
+    if given:
+        return spec.body(given[0])
+    tops = list(spec.worldbody.bodies)
+    named = [body for body in tops if body.name == "base"]
+    return (named or tops or [None])[0]
+
+
+def _looking(angle: float) -> list[float]:
+    """Return the rotation after which the z axis points level, at an angle from x [rad]."""
+    quat = np.empty(4)
+    turn = np.array([math.cos(angle / 2), 0.0, 0.0, math.sin(angle / 2)])
+    level = np.array([math.sqrt(0.5), 0.0, math.sqrt(0.5), 0.0])  # z to x
+    mujoco.mju_mulQuat(quat, turn, level)
+    return quat.tolist()
