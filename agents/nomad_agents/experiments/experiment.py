@@ -18,6 +18,7 @@ from nomad_mj.types import FloatArray
 
 LEARNER, STRAIGHT, PLANNER = ReactivePlanner.name, Straight.name, Planner.name
 BASELINE_SEEDS = 3  # they learn nothing: only the noise of their sensors differs between runs
+COSTLY_SEEDS = 5  # of cases that take minutes each: twenty of them would take half of the time
 
 
 @dataclass(frozen=True)
@@ -126,15 +127,24 @@ class Experiment(ABC):
         """Return what a video of the experiment shows, when its runs are on file."""
 
     def plan_runs(
-        self, study: Study, cases: Sequence[str], baselines: Sequence[str], room: str = ""
+        self,
+        study: Study,
+        cases: Sequence[str],
+        baselines: Sequence[str],
+        room: str = "",
+        costly: Sequence[str] = (),
     ) -> list[Run]:
-        """Return a run for each case, agent and seed."""
-        few = min(study.seeds, BASELINE_SEEDS)
+        """Return a run for each case, agent and seed; fewer seeds of baselines and costly cases."""
+
+        def seeds(case: str, agent: str) -> int:
+            most = BASELINE_SEEDS if agent != LEARNER else COSTLY_SEEDS
+            return min(study.seeds, most) if agent != LEARNER or case in costly else study.seeds
+
         return [
             Run(self.name, case, agent, study.config, room or study.room, study.robot, seed)
             for case in cases
             for agent in (LEARNER, *baselines)
-            for seed in range(study.seeds if agent == LEARNER else few)
+            for seed in range(seeds(case, agent))
         ]
 
 

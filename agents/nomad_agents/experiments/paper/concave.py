@@ -85,9 +85,10 @@ class Concave(Experiment):
 
     def runs(self, study: Study) -> list[Run]:
         """Return a run with and without memory for each seed, and some of the baselines."""
-        runs = self.plan_runs(study, list(MEMORY), (STRAIGHT, PLANNER), ROOM)
-        first = next(iter(MEMORY))  # the baselines remember nothing
-        return [run for run in runs if run.agent == LEARNER or run.case == first]
+        memory, without = MEMORY
+        runs = self.plan_runs(study, list(MEMORY), (STRAIGHT, PLANNER), ROOM, costly=(without,))
+        # The baselines remember nothing.
+        return [run for run in runs if run.agent == LEARNER or run.case == memory]
 
     def work(self, run: Run, folder: Path) -> Result:
         """Learn the way from the one start, then show it."""

@@ -69,7 +69,7 @@ class Noise(Experiment):
 
     def runs(self, study: Study) -> list[Run]:
         """Return a run for each kind of noise, agent and seed."""
-        return self.plan_runs(study, list(NOISES), (STRAIGHT, PLANNER))
+        return self.plan_runs(study, list(NOISES), (STRAIGHT, PLANNER), costly=("lost echoes",))
 
     def work(self, run: Run, folder: Path) -> Result:
         """Learn the room with this noise, then drive with it."""

@@ -157,7 +157,7 @@ class Adapting(Experiment):
 
     def runs(self, study: Study) -> list[Run]:
         """Return a run for each place and seed, and some of the baselines."""
-        return self.plan_runs(study, ADAPTED, (STRAIGHT, PLANNER))
+        return self.plan_runs(study, ADAPTED, (STRAIGHT, PLANNER), costly=("clutter",))
 
     def work(self, run: Run, folder: Path) -> Result:
         """Let an agent that learnt one place learn another, beside one that learnt none."""
