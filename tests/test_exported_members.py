@@ -28,8 +28,8 @@ PUBLIC = {
         "random_room read_floor_image read_plan read_room read_ros_map room_of_map to_mjcf"
     ),
     "nomad_mj.robots": (
-        "PREFIX RayIndex RobotDescription Sheet adopt describe_robot find_sheet group_rays "
-        "read_sheet report_surfaces set_rays_per_cone unclip_surfaces"
+        "PREFIX RayIndex RobotDescription Sheet adopt describe_robot find_sheet group_rays reach "
+        "read_sheet report_surfaces robot_geoms set_rays_per_cone unclip_surfaces"
     ),
     "nomad_mj.tasks": (
         "MotorConfig MotorEnvironment MotorTask NavigationPhysics OdometryNoise RangeNoise Start "

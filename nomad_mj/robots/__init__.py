@@ -1,7 +1,8 @@
 """What a robot file must offer, read from the compiled model."""
 
 from nomad_mj.robots.adopt import adopt
-from nomad_mj.robots.description import RobotDescription, describe_robot
+from nomad_mj.robots.description import RobotDescription, describe_robot, robot_geoms
+from nomad_mj.robots.extent import reach
 from nomad_mj.robots.naming import PREFIX
 from nomad_mj.robots.rays import set_rays_per_cone
 from nomad_mj.robots.rings import RayIndex, group_rays
@@ -17,8 +18,10 @@ __all__ = [
     "describe_robot",
     "find_sheet",
     "group_rays",
+    "reach",
     "read_sheet",
     "report_surfaces",
+    "robot_geoms",
     "set_rays_per_cone",
     "unclip_surfaces",
 ]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from nomad_agents.cli.bench import Bench
+from nomad_agents.cli.check import Check
 from nomad_agents.cli.common import fail
 from nomad_agents.cli.demo import Demo
 from nomad_agents.cli.evaluate import Evaluate
@@ -23,6 +24,7 @@ COMMANDS: dict[str, type[Any]] = {
     "record": Record,
     "reproduce": Reproduce,
     "room": MakeRoom,
+    "check": Check,
     "list": List,
     "bench": Bench,
     "demo": Demo,

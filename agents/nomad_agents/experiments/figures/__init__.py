@@ -2,7 +2,7 @@
 
 from nomad_agents.experiments.figures.actions import draw_actions
 from nomad_agents.experiments.figures.lattice import lattice
-from nomad_agents.experiments.figures.paths import draw_paths
+from nomad_agents.experiments.figures.paths import draw_paths, draw_starts
 from nomad_agents.experiments.figures.room import Panel
 
-__all__ = ["Panel", "draw_actions", "draw_paths", "lattice"]
+__all__ = ["Panel", "draw_actions", "draw_paths", "draw_starts", "lattice"]

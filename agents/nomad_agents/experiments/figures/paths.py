@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from nomad_agents.experiments.figures.room import Panel, draw_robot, goal_sign, robot_sign, rooms
 from nomad_agents.experiments.figures.style import RED
 from nomad_agents.experiments.pictures import Way
+from nomad_mj.scene import Scene
 
 # They only tell neighbours apart.
 _COLOURS = ("#2c6fbb", "#6f4aa8", "#3b8f8a", "#9a7b1c", "#4d5a68", "#8a5a44")
@@ -38,6 +39,15 @@ def draw_paths(panels: Sequence[Panel[Sequence[Way]]], path: Path, columns: int 
             for number, way in enumerate(panel.content):
                 colour = _COLOURS[number % len(_COLOURS)]
                 _draw_way(axes, way, colour, panel.scene.robot.layout.radius)
+
+
+def draw_starts(scene: Scene, path: Path) -> None:
+    """Draw a room with its goal and its starts, circles of the robot's size with their headings."""
+    signs = [robot_sign("start (robot's size)"), goal_sign()]
+    starts = scene.arena.starts
+    with rooms([Panel(scene.arena.name, scene, starts)], path, signs) as [(axes, _)]:
+        for x, y, heading in starts.tolist():
+            draw_robot(axes, (x, y), scene.robot.layout.radius, _COLOURS[0], heading)
 
 
 def _draw_way(axes: Axes, way: Way, colour: str, radius: float) -> None:

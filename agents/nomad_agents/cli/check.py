@@ -1,0 +1,120 @@
+"""``nomad-mj check``."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import mujoco
+import tyro
+from rich.console import Console
+from rich.table import Table
+
+from nomad_agents.checks import (
+    draw_robot_card,
+    drift_table,
+    drive_patterns,
+    find_faults,
+    robot_table,
+    robot_values,
+    room_values,
+    sensor_table,
+)
+from nomad_agents.cli.common import console, print_json
+from nomad_agents.experiments.figures import draw_starts
+from nomad_mj.assets import find_robot, find_room, list_robots, list_rooms
+from nomad_mj.errors import ModelError, OutputError
+from nomad_mj.robots import find_sheet
+from nomad_mj.scene import build_scene
+
+_EMPTY = "empty_room"
+
+
+@dataclass(frozen=True)
+class Check:
+    """Look a robot or a room over: what was found in its file, what is missing, how it drives."""
+
+    file: tyro.conf.Positional[str]
+    """MJCF file of a robot or a room, or the name of one that comes with the package."""
+    robot: str = "nomad200"
+    """Robot that a room is checked for."""
+    out: Annotated[str, tyro.conf.arg(aliases=["-o"])] = "renders"
+    """Folder for the picture."""
+    drive: bool = True
+    """Drive the test patterns."""
+    json: bool = False
+    """Print one line of JSON on standard output."""
+
+    def run(self) -> int:
+        """Print what was found; return 0, or 1 if something should be better."""
+        out = _folder(self.out)
+        screen = console(json_wanted=self.json)
+        if is_room(self.file):
+            return self._room(screen, out)
+        scene = build_scene(_EMPTY, self.file)
+        path = out / f"check_{scene.robot.name}"
+        faults = find_faults(scene)
+        drifts = drive_patterns(self.file) if self.drive else []
+        draw_robot_card(scene, path)
+        for table in (robot_table(scene, find_robot(self.file)), sensor_table(scene)):
+            screen.print(table)
+        if drifts:
+            screen.print(drift_table(drifts))
+        _print_faults(screen, faults, path.with_suffix(".png"))
+        if self.json:
+            print_json(
+                robot_values(scene)
+                | {"faults": faults, "patterns": [drift._asdict() for drift in drifts]}
+            )
+        return 1 if faults or not all(drift.finished for drift in drifts) else 0
+
+    def _room(self, screen: Console, out: Path) -> int:
+        scene = build_scene(self.file, self.robot)
+        path = out / f"check_{scene.arena.name}"
+        draw_starts(scene, path)
+        values = room_values(scene)
+        table = Table("what", "found", title=f"Room {scene.arena.name}, for {self.robot}")
+        for name, value in values.items():
+            table.add_row(name.replace("_", " "), str(value))
+        screen.print(table)
+        _print_faults(screen, [], path.with_suffix(".png"))
+        if self.json:
+            print_json(values | {"faults": []})
+        return 0
+
+
+def _folder(out: str) -> Path:
+    folder = Path(out)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"cannot write {out!r}: {error.strerror}") from None
+    return folder
+
+
+def is_room(name: str) -> bool:
+    """Return whether a name or a file is that of a room: it has no actuator, or has a goal.
+
+    Raises
+    ------
+    NomadError
+        There is no such file; a file that cannot be read is left to whoever loads it.
+    """
+    if name in list_rooms() or name in list_robots():
+        return name in list_rooms()
+    if "/" not in name and not Path(name).suffix:
+        known = sorted([*list_robots(), *list_rooms()])
+        raise ModelError(f"unknown robot or room {name!r}; there are: {', '.join(known)}")
+    path = find_room(name)
+    try:
+        spec = mujoco.MjSpec.from_file(str(path))
+    except (ValueError, RuntimeError, UnicodeDecodeError):
+        return False
+    return not list(spec.actuators) and not find_sheet(path)
+
+
+def _print_faults(screen: Console, faults: list[str], picture: Path) -> None:
+    for fault in faults:
+        screen.print(f"[yellow]![/yellow] {fault}", soft_wrap=True)
+    if not faults:
+        screen.print("Nothing is missing.")
+    screen.print(f"Picture: {picture}", soft_wrap=True, markup=False)
