@@ -80,8 +80,8 @@ def test_the_racer_turns_in_the_circle_of_a_bicycle(angle: float) -> None:
     distances = np.hypot(*(path[1:, :2] - path[:-1, :2]).T)
     turns = np.angle(np.exp(1j * np.diff(path[:, 2])))
     radii = distances / (2 * np.sin(np.abs(turns) / 2))
-    np.testing.assert_allclose(radii, np.hypot(rear, base / 2), rtol=4e-3)
-    np.testing.assert_allclose(turns / CONTROL_STEP, 1 / rear, rtol=5e-3)
+    np.testing.assert_allclose(radii, np.hypot(rear, base / 2), rtol=1.5e-3)
+    np.testing.assert_allclose(turns / CONTROL_STEP, 1 / rear, rtol=2.5e-3)
     left, right = (robot.data.joint(f"robot/wheel_{side}").qpos[0] for side in ("left", "right"))
     assert 1 / np.tan(right) - 1 / np.tan(left) == pytest.approx(0.254 / base, rel=0.02)
 
