@@ -17,7 +17,7 @@ ROOMS = (
     "moving_room",
     "paper_room",
 )
-ROBOTS = ("nomad200", "nomad200_wheels")
+ROBOTS = ("khepera", "nomad200", "nomad200_wheels", "omnibot", "pioneer", "racer")
 FIND: dict[str, Callable[[str | Path], Path]] = {
     "room": assets.find_room,
     "robot": assets.find_robot,
