@@ -12,7 +12,9 @@ from nomad_mj.errors import StartError
 from nomad_mj.types import FloatArray, IntArray
 
 _SLACK = 1e-6  # [m]: sight lines may graze the boundary they run along
+_GRAZE = 1e-10  # [m2], what rounding makes of a line along a wall of a hundred metres
 _CHUNK = 1_000_000  # pairs of point and corner looked at together
+_TRIES = 8  # ways from a point that are looked at first, the shortest ones
 
 
 class Geodesic:
@@ -89,8 +91,7 @@ class Geodesic:
     def _to_goal(self) -> tuple[FloatArray, IntArray]:
         """Distance of every corner, then the goal, to the goal, and the node that comes next."""
         count = len(self._corners)
-        tangent = self._tangent(self._corners)
-        source, target = np.nonzero(np.triu(tangent & tangent.T, k=1))
+        source, target = self._pairs()
         at_goal = np.flatnonzero(self._tangent(self.goal[None])[0])
         source = np.concatenate([source, at_goal])
         target = np.concatenate([target, np.full(len(at_goal), count)])
@@ -103,6 +104,19 @@ class Geodesic:
             graph, directed=False, indices=count, return_predecessors=True
         )
         return np.asarray(distance), np.asarray(following)
+
+    def _pairs(self) -> tuple[IntArray, IntArray]:
+        """Return the pairs of corners, the lower number first, whose line is a tangent at both."""
+        count = len(self._corners)
+        rows = max(1, _CHUNK // (count + 1))
+        found = [np.zeros((0, 2), dtype=np.intp)]
+        for first in range(0, count, rows):
+            last = min(first + rows, count)
+            there = self._tangent(self._corners[first:last], first)
+            back = self._tangent(self._corners[first:], first, last).T
+            found.append(np.argwhere(np.triu(there & back, k=1)) + first)
+        source, target = np.concatenate(found).T
+        return source, target
 
     def _solve(self, points: FloatArray) -> tuple[FloatArray, IntArray]:
         """Length of each path (N,) and the node it makes for first (N,), corner or goal."""
@@ -118,18 +132,39 @@ class Geodesic:
         fits = shapely.intersects_xy(self._space, points)
         sight = fits & self._sees(points, np.broadcast_to(self.goal, points.shape))
         length[sight, count] = np.linalg.norm(points[sight] - self.goal, axis=-1)
+        leg = np.linalg.norm(self._corners - points[:, None], axis=-1)
         candidates = self._tangent(points) & (fits & ~sight)[:, None]
-        point, corner = np.nonzero(candidates & np.isfinite(self._distance[:count]))
-        seen = self._sees(points[point], self._corners[corner])
-        point, corner = point[seen], corner[seen]
-        leg = np.linalg.norm(points[point] - self._corners[corner], axis=-1)
-        length[point, corner] = leg + self._distance[corner]
+        ways = np.where(candidates, leg + self._distance[:count], np.inf)
+        order = np.argsort(ways, axis=1)
+        todo, first, tries = np.flatnonzero(np.isfinite(ways).any(axis=1)), 0, _TRIES
+        while len(todo) and first < count:
+            corner = order[todo, first : first + tries]
+            way = ways[todo[:, None], corner]
+            row, column = np.nonzero(np.isfinite(way))
+            seen = self._sees(points[todo[row]], self._corners[corner[row, column]])
+            row, column = row[seen], column[seen]
+            length[todo[row], corner[row, column]] = way[row, column]
+            # The first that is seen is the shortest: all that come later are longer.
+            done = np.zeros(len(todo), dtype=np.bool_)
+            done[row] = True
+            first, tries, todo = first + tries, 2 * tries, todo[~done & np.isfinite(way[:, -1])]
         return length.min(axis=1), length.argmin(axis=1)
 
-    def _tangent(self, points: FloatArray) -> npt.NDArray[np.bool_]:
-        """Whether lines from points (N, 2) to corners (V, 2) touch these without cutting them."""
-        line = self._corners - points[:, None]
-        return _cross(line, self._before) * _cross(line, self._after) >= -1e-12
+    def _tangent(
+        self, points: FloatArray, first: int = 0, last: int | None = None
+    ) -> npt.NDArray[np.bool_]:
+        """Whether lines from points (N, 2) to corners (V, 2) touch these without cutting them.
+
+        Of the corners those from number `first` to before `last` are looked at.
+        """
+        sides: list[FloatArray] = []
+        for way in (self._before[first:last], self._after[first:last]):
+            # The cross product of line and way, as a product of matrices.
+            across = np.stack([way[:, 1], -way[:, 0]])
+            here = self._corners[first:last] - self.goal
+            sides.append(_cross(here, way) - (points - self.goal) @ across)
+        # One too many is seen through later, one too few would be a way that is missing.
+        return sides[0] * sides[1] >= -_GRAZE
 
     def _sees(self, start: FloatArray, end: FloatArray) -> npt.NDArray[np.bool_]:
         """Whether the straight lines between two arrays of points (M, 2) stay in the free space."""
@@ -152,9 +187,13 @@ def _corners(space: shapely.Polygon) -> tuple[FloatArray, FloatArray, FloatArray
         back, ahead = np.roll(points, 1, axis=0) - points, np.roll(points, -1, axis=0) - points
         bends = _cross(-back, ahead) < 0
         corners.append(points[bends])
-        before.append(back[bends])
-        after.append(ahead[bends])
+        before.append(_unit(back[bends]))
+        after.append(_unit(ahead[bends]))
     return np.concatenate(corners), np.concatenate(before), np.concatenate(after)
+
+
+def _unit(ways: FloatArray) -> FloatArray:
+    return ways / np.linalg.norm(ways, axis=-1, keepdims=True)
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:

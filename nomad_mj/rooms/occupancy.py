@@ -9,8 +9,10 @@ from scipy import ndimage
 
 from nomad_mj.errors import ModelError
 from nomad_mj.geometry import rotate
+from nomad_mj.rooms.islands import fit_islands
 from nomad_mj.rooms.rectangles import Mask, merge_cells
-from nomad_mj.rooms.room import Box, Room
+from nomad_mj.rooms.room import Box, Cylinder, Polygon, Room, Shape
+from nomad_mj.rooms.smooth import straighten, without_specks
 from nomad_mj.types import FloatArray
 
 FREE, OCCUPIED, UNKNOWN = 0, 1, 2
@@ -75,8 +77,9 @@ def room_of_map(
     Of all free space only one connected part becomes the room: that of the goal or, without one,
     the largest. Whatever borders on it, diagonally too, is wall, be it occupied, unknown or the
     end of the map. What lies farther off can neither be seen nor be touched and is left out,
-    or filled where that makes for fewer boxes. Gaps one cell wide are filled in maps with cells of
-    up to 0.1 m.
+    or filled where that makes for fewer boxes. In maps with cells of up to 0.1 m noise goes: gaps
+    one cell wide are filled, unknown spots in free space are free, bumps and notches one cell deep
+    are made straight, and what stands free becomes a pillar, box or prism if that is what it is.
 
     Parameters
     ----------
@@ -94,9 +97,7 @@ def room_of_map(
     ModelError
         No free space, or none at the goal.
     """
-    free = np.pad(grid.cells == FREE, 1)
-    if grid.resolution <= _FINE:
-        free = np.asarray(ndimage.binary_opening(free, np.ones((2, 2))), dtype=np.bool_)
+    free = _free(grid)
     inside = _region(grid, free, goal)
     if goal is None:
         depth = np.asarray(ndimage.distance_transform_edt(inside))
@@ -106,14 +107,35 @@ def room_of_map(
     if math.isfinite(within):
         near = _near(grid, inside.shape, goal, within)
         inside = _region(grid, np.logical_and(inside, near), goal)
-    grown = ndimage.binary_dilation(inside, np.ones((3, 3)))
-    shell = np.logical_and(grown, ~inside)
-    walls = tuple(_box(grid, rectangle) for rectangle in merge_cells(shell, ~inside & ~shell) - 1)
+    walls, things = _shapes(grid, inside)
     rows, columns = np.nonzero(inside)
     low, high = (columns.min() - 1, rows.min() - 1), (columns.max(), rows.max())
     outline = grid.to_world([low, (high[0], low[1]), high, (low[0], high[1])])
     x0, y0, x1, y1 = *outline.min(axis=0).tolist(), *outline.max(axis=0).tolist()
-    return Room(name, walls, (), (x0, y0, x1, y1), goal)
+    return Room(name, walls, things, (x0, y0, x1, y1), goal)
+
+
+def _shapes(grid: Occupancy, inside: Mask) -> tuple[tuple[Box, ...], tuple[Shape, ...]]:
+    """Return the walls around the free space of a padded map, and what stands free in it."""
+    things: list[Shape] = []
+    shown: Mask = np.zeros_like(inside)
+    if grid.resolution <= _FINE:
+        things, shown = fit_islands(inside)
+        inside = ~(straighten(~(inside | shown)) | shown)
+    grown = ndimage.binary_dilation(inside, np.ones((3, 3)))
+    shell = np.logical_and(grown, ~(inside | shown))
+    rectangles = merge_cells(shell, ~(inside | shell | shown)) - 1
+    walls = tuple(_box(grid, rectangle) for rectangle in rectangles)
+    return walls, tuple(_obstacle(grid, thing) for thing in things)
+
+
+def _free(grid: Occupancy) -> Mask:
+    """Return the free cells, one more all around; of a fine map without its noise."""
+    free = grid.cells == FREE
+    if grid.resolution > _FINE:
+        return np.pad(free, 1)
+    free = np.pad(without_specks(free, grid.cells == OCCUPIED), 1)
+    return np.asarray(ndimage.binary_opening(free, np.ones((2, 2))), dtype=np.bool_)
 
 
 def _region(grid: Occupancy, free: Mask, goal: tuple[float, float] | None) -> Mask:
@@ -147,6 +169,18 @@ def _near(
     near: Mask = np.zeros(shape, dtype=np.bool_)
     near[max(0, row - reach) : row + reach + 1, max(0, column - reach) : column + reach + 1] = True
     return near
+
+
+def _obstacle(grid: Occupancy, shape: Shape) -> Shape:
+    """Return a shape in the world that is given in cells of the padded map."""
+    if isinstance(shape, Polygon):
+        points = grid.to_world(np.array(shape.corners) - 1)
+        return Polygon(tuple((float(x), float(y)) for x, y in points))
+    x, y = grid.to_world((shape.x - 1, shape.y - 1)).tolist()
+    size = grid.resolution
+    if isinstance(shape, Cylinder):
+        return Cylinder(x, y, shape.radius * size)
+    return Box(x, y, shape.length * size, shape.width * size, shape.angle + grid.origin[2])
 
 
 def _box(grid: Occupancy, rectangle: npt.NDArray[np.intp]) -> Box:

@@ -115,7 +115,7 @@ def test_only_what_is_near_the_goal() -> None:
     cells[::40, ::40] = OCCUPIED
     grid = Occupancy(cells, RESOLUTION, (-10.0, -10.0, 0.0))
     whole, near = room_of_map(grid, "a", (0.5, 0.5)), room_of_map(grid, "a", (0.5, 0.5), 3.0)
-    assert len(near.walls) < len(whole.walls) / 5
+    assert len(near.obstacles) < len(whole.obstacles) / 5 and len(near.walls) == 4
     assert np.allclose(near.bounds, (-2.5, -2.5, 3.5, 3.5), atol=0.2)
 
 

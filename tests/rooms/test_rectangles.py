@@ -1,4 +1,4 @@
-"""Rectangles cover cells once, and nothing else."""
+"""Rectangles cover cells, and nothing else."""
 
 import numpy as np
 from hypothesis import given
@@ -21,7 +21,7 @@ def painted(rectangles: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
 
 @given(MASKS)
 def test_they_cover_exactly_what_is_asked_for(must: np.ndarray) -> None:
-    assert (painted(merge_cells(must), must.shape) == must).all()
+    assert ((painted(merge_cells(must), must.shape) > 0) == must).all()
 
 
 @given(PAIRS)
@@ -29,8 +29,7 @@ def test_they_stray_only_where_they_may_and_are_no_more(pair: tuple[np.ndarray, 
     must, may = pair
     rectangles = merge_cells(must, may)
     times = painted(rectangles, must.shape)
-    assert times.max(initial=0) <= 1
-    assert (times[must] == 1).all() and not times[~must & ~may].any()
+    assert times[must].all() and not times[~must & ~may].any()
     assert len(rectangles) <= must.sum()
 
 
@@ -41,3 +40,9 @@ def test_the_same_cells_give_the_same_rectangles(must: np.ndarray) -> None:
 
 def test_a_full_grid_is_one_rectangle() -> None:
     assert merge_cells(np.ones((5, 9), dtype=bool)).tolist() == [[0, 0, 5, 9]]
+
+
+def test_a_cross_is_two_rectangles_that_overlap() -> None:
+    cross = np.zeros((7, 7), dtype=bool)
+    cross[3] = cross[:, 3] = True
+    assert merge_cells(cross).tolist() == [[0, 3, 7, 4], [3, 0, 4, 7]]
