@@ -47,6 +47,10 @@ class Geodesic:
         self._corners, self._before, self._after = _corners(space)
         self._space = shapely.buffer(space, _SLACK, join_style="mitre")
         shapely.prepare(self._space)
+        # Whether a line meets what is not free is told ten times faster than whether it is inside.
+        around = shapely.box(*shapely.bounds(self._space)).buffer(1.0, join_style="mitre")
+        self._blocked = shapely.difference(around, self._space)
+        shapely.prepare(self._blocked)
         self._distance, self._next = self._to_goal()
 
     def length(self, points: npt.ArrayLike) -> FloatArray:
@@ -169,9 +173,7 @@ class Geodesic:
     def _sees(self, start: FloatArray, end: FloatArray) -> npt.NDArray[np.bool_]:
         """Whether the straight lines between two arrays of points (M, 2) stay in the free space."""
         lines = shapely.linestrings(np.stack([start, end], axis=1))
-        seen = np.asarray(shapely.covers(self._space, lines))
-        # A line of no length is covered by nothing.
-        return seen | (np.linalg.norm(end - start, axis=-1) < _SLACK)
+        return ~np.asarray(shapely.intersects(self._blocked, lines))
 
 
 def _corners(space: shapely.Polygon) -> tuple[FloatArray, FloatArray, FloatArray]:

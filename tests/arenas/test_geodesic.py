@@ -169,12 +169,12 @@ def test_fast_enough_to_be_made_at_every_evaluation() -> None:
 
 def test_a_large_room_is_measured_in_seconds_and_in_little_memory() -> None:
     rng = np.random.default_rng(0)
-    posts = [shapely.Point(*rng.uniform(0, 40, 2)).buffer(0.3, quad_segs=16) for _ in range(250)]
+    posts = [shapely.Point(*rng.uniform(0, 40, 2)).buffer(0.3, quad_segs=16) for _ in range(120)]
     plan = FloorPlan((str(number), post) for number, post in enumerate(posts))
     goal = plan.sample_free(1, rng, RADIUS, 0.1, [-1.0, -1.0], 0.0)[0]
     begin = time.thread_time()
     to_goal = Geodesic(plan, goal, RADIUS)
     places = plan.sample_free(200, rng, RADIUS, 0.1, goal, 1.0)
     ratio = to_goal.length(places) / np.linalg.norm(places - goal, axis=-1)
-    assert time.thread_time() - begin < 8
+    assert time.thread_time() - begin < 6
     assert ratio.min() >= 1 - 1e-9 and ratio.max() < 1.3

@@ -123,7 +123,7 @@ def test_a_thing_drawn_on_a_map_is_found_again(
         found = affinity.translate(shapely.Polygon(shape.corners), -1, -1)
     assert kind != "disc" or size < 6 or isinstance(shape, Cylinder)
     assert kind != "box" or not isinstance(shape, Cylinder) or size < 10
-    inside = shapely.contains_xy(found, columns, rows)
+    inside = shapely.contains_xy(found.buffer(-1e-6), columns, rows)
     assert np.asarray(ndimage.distance_transform_edt(~drawn))[inside].max() <= 1
     left = shapely.points(np.stack([columns, rows], axis=-1)[drawn & ~inside])
     assert np.asarray(shapely.distance(found, left)).max(initial=0.0) <= 1.001
