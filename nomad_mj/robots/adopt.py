@@ -38,6 +38,7 @@ def adopt(spec: mujoco.MjSpec, sheet: Sheet, robot: str) -> None:
     _stand_at_origin(spec)
     for name in _rename_motors(spec, sheet, robot):
         _encode(spec, name)
+    _make_servos(spec, sheet)
     for name, value in sheet.numbers.items():
         for old in [n for n in spec.numerics if n.name == name]:
             spec.delete(old)
@@ -65,6 +66,9 @@ def _undress(spec: mujoco.MjSpec) -> None:
     """Take away what belongs to a scene and not to a robot."""
     for geom in list(spec.worldbody.geoms):
         spec.delete(geom)
+    geoms = {geom.name for geom in spec.geoms}
+    for pair in [p for p in spec.pairs if not {p.geomname1, p.geomname2} <= geoms]:
+        spec.delete(pair)  # with the floor that has gone
     for light in list(spec.lights):
         spec.delete(light)
     for camera in list(spec.worldbody.cameras):
@@ -109,6 +113,18 @@ def _rename_actuator(spec: mujoco.MjSpec, old: str, new: str) -> None:
     for sensor in spec.sensors:
         if sensor.objtype == mujoco.mjtObj.mjOBJ_ACTUATOR and sensor.objname == old:
             sensor.objname = new
+
+
+def _make_servos(spec: mujoco.MjSpec, sheet: Sheet) -> None:
+    """Make velocity servos of a data sheet's wheels, if it says how stiff and how fast."""
+    gain, speed = (sheet.numbers.get(name) for name in ("servo_gain", "servo_max_speed"))
+    wheels = {*sheet.motors.get("", ()), *(["drive"] if sheet.drive == "car" else [])}
+    if gain is None or speed is None:
+        return
+    for actuator in spec.actuators:
+        if actuator.name in wheels or actuator.name.startswith("drive_"):
+            actuator.set_to_velocity(kv=gain)
+            actuator.ctrlrange, actuator.ctrllimited = [-speed, speed], True
 
 
 def _encode(spec: mujoco.MjSpec, actuator: str) -> None:

@@ -159,13 +159,16 @@ def wheeled_drive(
     actuators = named.actuators()
     wheels = [Wheel(named, name, actuators[name]) for name in names]
     rows = np.array([wheel.row for wheel in wheels])
+    track = named.find_number("track")
+    if track is not None:  # as odometry is calibrated: the distance of tyres that turns tell
+        rows[:, 2] *= track / max(float(np.ptp(rows[:, 2] / rows[:, 0])), 1e-9)
     fastest = [
         top_speed(named, n, actuators[n]) / w.gain for n, w in zip(names, wheels, strict=True)
     ]
     rank = int(np.linalg.matrix_rank(rows, tol=1e-3))
     if kind and (rank == 3) != (kind == "omni"):
         raise named.error(f": it is said to be {kind}, but its wheels are not")
-    if rank < 2 or not np.any(np.abs(rows[:, 0]) > 1e-3):
+    if rank < 2 or (np.any(np.abs(rows[:, 0]) < 1e-3) and rank < 3):
         raise named.error(f": its wheels {', '.join(names)} can only drive, or only turn it")
     directions = rows[:, :2] if rank == 3 else rows[:, :1]
     along = float(np.min(np.array(fastest) / np.linalg.norm(directions, axis=1)))
@@ -179,7 +182,7 @@ def wheeled_drive(
     return WheeledDrive(
         limits,
         tuple(names),
-        tuple(wheel.row for wheel in wheels),
+        tuple((row[0], row[1], row[2]) for row in rows.tolist()),
         tuple(wheel.gain for wheel in wheels),
         tuple(fastest),
     )

@@ -1,7 +1,7 @@
 """Look a robot's or a room's file over before anything is learnt with it."""
 
 from nomad_agents.checks.faults import find_faults
-from nomad_agents.checks.patterns import Drift, drive_patterns
+from nomad_agents.checks.patterns import Drift, drive_patterns, find_drift_faults
 from nomad_agents.checks.picture import draw_robot_card
 from nomad_agents.checks.tables import (
     drift_table,
@@ -16,6 +16,7 @@ __all__ = [
     "draw_robot_card",
     "drift_table",
     "drive_patterns",
+    "find_drift_faults",
     "find_faults",
     "robot_table",
     "robot_values",

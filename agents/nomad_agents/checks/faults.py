@@ -13,6 +13,7 @@ from nomad_mj.types import Pose
 
 _MOVE = 1.0  # [m], the longest
 _LEVEL = math.radians(5)
+_SEAM = math.radians(3)  # between cones that still count as closed
 _REST = 2.0  # [s] for which the robot should stand still
 _STILL, _UPRIGHT = 0.002, math.radians(1)  # [m], [rad]
 
@@ -56,7 +57,7 @@ def _gaps(scene: Scene) -> list[str]:
     middles = np.arange(720) * math.pi / 360
     for bearing, half in cones:
         off = np.abs((middles - bearing + math.pi) % (2 * math.pi) - math.pi)
-        covered |= off <= half + math.radians(1)
+        covered |= off <= half + _SEAM
     share = 1 - covered.mean()
     if share < 0.02:
         return []

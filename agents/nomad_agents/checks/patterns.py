@@ -1,13 +1,13 @@
 """Test patterns: how far a robot gets from where it should be, and from where it believes it is."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import nomad_mj
-from nomad_mj.motion import CarDrive, MotionConfig, Outcome, ramp_speed
-from nomad_mj.scene import CONTROL_TIMESTEP
+from nomad_mj.motion import CarDrive, MotionConfig, Outcome, WheeledDrive, ramp_speed
+from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.tasks import MotorEnvironment, RangeNoise
 from nomad_mj.types import Travel
 
@@ -16,6 +16,7 @@ _START = (4.0, 4.0, 0.0)
 _ROOM = "empty_room"
 _CAREFUL = 0.5  # of the largest speed of turning
 _PATIENCE = 60.0  # [s] for a pattern
+_SLIP = 0.01  # of the way, or of the turn, that odometry may be off
 
 
 class Drift(NamedTuple):
@@ -29,6 +30,8 @@ class Drift(NamedTuple):
         From the robot to where it should be [m].
     off_odometry, off_heading : float
         From the robot to where its odometry puts it [m], and in heading [rad].
+    turned : float
+        By how much odometry has turned [rad].
     seconds : float
         It took [s of simulated time].
     finished : bool
@@ -39,6 +42,7 @@ class Drift(NamedTuple):
     off_target: float
     off_odometry: float
     off_heading: float
+    turned: float
     seconds: float
     finished: bool
 
@@ -50,6 +54,7 @@ class _Driver:
         self.env = env
         self.step = env.reset(seed=0, start=_START)
         self.ticks = 0
+        self.turned = 0.0
 
     @property
     def travel(self) -> Travel:
@@ -59,7 +64,9 @@ class _Driver:
 
     def command(self, speeds: tuple[float, ...]) -> None:
         """Go on by a control step."""
+        before = self.travel.heading
         self.step = self.env.step(speeds)
+        self.turned += math.remainder(self.travel.heading - before, 2 * math.pi)
         self.ticks += 1
 
     def go_to(self, x: float, y: float) -> bool:
@@ -81,20 +88,17 @@ class _Driver:
         """Turn by an angle [rad]: on the spot, or as tightly as a car can."""
         drive = self.env.task.scene.robot.drive
         limits, dt = drive.limits, CONTROL_TIMESTEP
-        turned, last, speed = 0.0, self.travel.heading, 0.0
+        speed = 0.0
         tight = isinstance(drive, CarDrive)
         forward = limits.translate * _CAREFUL * 0.5 if tight else 0.0
         top = limits.turn * _CAREFUL
         if isinstance(drive, CarDrive):
             top = forward * math.tan(drive.lock) / drive.wheelbase
-        while angle - turned > 1e-4 or abs(speed) > 1e-3:
-            wanted = ramp_speed(angle - turned, top, 0.5 * limits.turn_acceleration, dt)
+        while angle - self.turned > 1e-4 or abs(speed) > 1e-3:
+            wanted = ramp_speed(angle - self.turned, top, 0.5 * limits.turn_acceleration, dt)
             change = limits.turn_acceleration * dt
             speed += min(max(wanted - speed, -change), change)
             self.command(drive.twist(forward * speed / top, 0.0, speed, self.travel))
-            heading = self.travel.heading
-            turned += math.remainder(heading - last, 2 * math.pi)
-            last = heading
             if self.ticks * dt > _PATIENCE:
                 return False
         return True
@@ -109,6 +113,7 @@ class _Driver:
             math.hypot(at.x - target[0], at.y - target[1]),
             math.hypot(at.x - x, at.y - y),
             math.remainder(at.heading - heading, 2 * math.pi),
+            self.turned,
             self.ticks * CONTROL_TIMESTEP,
             finished,
         )
@@ -154,3 +159,28 @@ def drive_patterns(robot: str | Path) -> list[Drift]:
     time_limit = {"time_limit": math.inf}
     with nomad_mj.load("motor", _ROOM, robot, options, time_limit) as env:
         return [pattern(_Driver(env)) for pattern in _PATTERNS]
+
+
+def find_drift_faults(scene: Scene, drifts: Sequence[Drift]) -> list[str]:
+    """Return what test patterns tell is wrong, one line each, with what would be better.
+
+    The calibration is that of J. Borenstein and L. Feng, "Measurement and correction of systematic
+    odometry errors in mobile robots", IEEE Trans. Robotics and Automation 12 (1996).
+    """
+    faults = [f"{drift.name}: did not come to its end" for drift in drifts if not drift.finished]
+    straight, turn, _ = drifts
+    if straight.off_odometry > _SLIP * _SIDE:
+        faults.append(
+            f"odometry is off by {1000 * straight.off_odometry:.0f} mm after {_SIDE:g} m straight "
+            "ahead: the wheels slip (castors that drag or carry the weight, weak friction), or "
+            "wheel_radius is wrong"
+        )
+    drive = scene.robot.drive
+    if isinstance(drive, WheeledDrive) and abs(turn.off_heading) > _SLIP * 2 * math.pi:
+        fault = f"odometry is off by {math.degrees(turn.off_heading):.0f} deg after a full turn"
+        if drive.kind == "differential":
+            arms = [row[2] / row[0] for row in drive.rows]
+            track = (max(arms) - min(arms)) * turn.turned / (turn.turned + turn.off_heading)
+            fault += f": say track: {track:.4g} under numbers in its data sheet"
+        faults.append(fault)
+    return faults

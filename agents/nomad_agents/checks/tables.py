@@ -57,7 +57,7 @@ def sensor_table(scene: Scene) -> Table:
     for ring in robot.layout.rings:
         count = len(ring.bearings)
         rays = edges[first + count] - edges[first]
-        bearings = [f"{math.degrees(b):.0f}" for b in ring.bearings]
+        bearings = [str(round(math.degrees(b))) for b in ring.bearings]
         shown = " ".join(bearings if count <= 16 else [*bearings[:8], "...", bearings[-1]])
         table.add_row(
             ring.name,
