@@ -8,7 +8,7 @@ from nomad_mj.assets import list_robots, list_rooms  # noqa: E402
 from nomad_mj.envs import PathFinding, PathFindingConfig, load  # noqa: E402
 from nomad_mj.errors import NomadError  # noqa: E402
 from nomad_mj.motion import Outcome  # noqa: E402
-from nomad_mj.movers import MovingGoal, MovingObstacles  # noqa: E402
+from nomad_mj.movers import MovingGoal, MovingObstacles, Walkers  # noqa: E402
 from nomad_mj.tasks import MotorConfig, MotorEnvironment, OdometryNoise, RangeNoise  # noqa: E402
 
 __version__ = "0.1.0"
@@ -24,6 +24,7 @@ __all__ = [
     "PathFinding",
     "PathFindingConfig",
     "RangeNoise",
+    "Walkers",
     "list_robots",
     "list_rooms",
     "load",

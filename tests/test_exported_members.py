@@ -8,7 +8,7 @@ import pytest
 PUBLIC = {
     "nomad_mj": (
         "MotorConfig MotorEnvironment MovingGoal MovingObstacles NomadError OdometryNoise Outcome "
-        "PathFinding PathFindingConfig RangeNoise list_robots list_rooms load"
+        "PathFinding PathFindingConfig RangeNoise Walkers list_robots list_rooms load"
     ),
     "nomad_mj.perception": (
         "GridSpec Percept SituationSpec attraction_force cell_centres certainty_grid code_grid "
@@ -20,8 +20,8 @@ PUBLIC = {
     ),
     "nomad_mj.arenas": "Arena FloorPlan Geodesic Nearby check_arena goal_site",
     "nomad_mj.movers": (
-        "Drift Movers Moving MovingBody MovingGoal MovingObstacles Walk add_obstacles place_goal "
-        "read_moving"
+        "Drift Movers Moving MovingBody MovingGoal MovingObstacles Stroll Walk Walker Walkers "
+        "add_obstacles place_goal read_moving"
     ),
     "nomad_mj.rooms": (
         "Box Cylinder FREE OCCUPIED Occupancy Polygon Room UNKNOWN furnish maze_room merge_cells "

@@ -4,6 +4,7 @@ from nomad_mj.movers.bodies import Moving, MovingBody, read_moving
 from nomad_mj.movers.drift import Drift, MovingGoal, MovingObstacles
 from nomad_mj.movers.movers import Movers
 from nomad_mj.movers.spec import add_obstacles, place_goal
+from nomad_mj.movers.stroll import Stroll, Walker, Walkers
 from nomad_mj.movers.walk import Walk
 
 __all__ = [
@@ -13,7 +14,10 @@ __all__ = [
     "MovingBody",
     "MovingGoal",
     "MovingObstacles",
+    "Stroll",
     "Walk",
+    "Walker",
+    "Walkers",
     "add_obstacles",
     "place_goal",
     "read_moving",

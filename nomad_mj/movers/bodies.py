@@ -1,5 +1,6 @@
 """The moving bodies of a compiled scene: which they are, how large, and how they move."""
 
+import math
 from dataclasses import dataclass, replace
 
 import mujoco
@@ -9,6 +10,7 @@ from nomad_mj.arenas.footprints import reach
 from nomad_mj.arenas.names import MOVING, goal_site, is_moving, room_name
 from nomad_mj.errors import ModelError
 from nomad_mj.movers.drift import Drift, MovingGoal, MovingObstacles
+from nomad_mj.movers.stroll import Walker, Walkers
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,8 @@ class MovingBody:
         Of the upright cylinder around all that collides [m]; 0 for a goal.
     home : (float, float) or None
         Where it starts if nothing is in the way [m]; None for anywhere.
+    walker : Walker or None
+        How it walks, if it does so and does not drift.
     """
 
     name: str
@@ -37,6 +41,7 @@ class MovingBody:
     offset: tuple[float, float] = (0.0, 0.0)
     radius: float = 0.0
     home: tuple[float, float] | None = None
+    walker: Walker | None = None
 
 
 @dataclass(frozen=True)
@@ -105,7 +110,9 @@ def read_moving(
     for body in np.flatnonzero(model.body_mocapid >= 0).tolist():
         if is_moving(model, body) and (geoms := _colliding(model, body)):
             mine = obstacles if room_name(model.body(body).name) in added else None
-            found.append(_obstacle(model, data, body, geoms, speed, mine))
+            made = _obstacle(model, data, body, geoms, speed, mine)
+            walker = _walker(model, data, body, room, made.drift, mine)
+            found.append(replace(made, walker=walker))
     return Moving(moving_goal, tuple(found))
 
 
@@ -126,6 +133,38 @@ def _obstacle(
         radius=max(reach(model, data, geom, data.xpos[body]) for geom in geoms),
         home=(x, y) if config is None else None,
     )
+
+
+def _walker(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    body: int,
+    room: str,
+    drift: Drift,
+    config: MovingObstacles | None,
+) -> Walker | None:
+    """Return how a body walks, by the options or by its `user` data in the file; None: it drifts.
+
+    The sites whose names begin with the body's, ``_way`` behind it, are its way points.
+    """
+    if config is not None:
+        assert drift.speed is not None
+        return Walker(drift.speed, config.pause) if isinstance(config, Walkers) else None
+    speed, pause = np.pad(model.body_user[body], (0, 2))[:2].tolist()
+    if speed == 0 and pause == 0:
+        return None
+    name = room_name(model.body(body).name)
+    if not (0 < speed < math.inf and 0 <= pause < math.inf):
+        raise ModelError(
+            f"room {room!r}: body {name!r} has user data {speed:g} {pause:g}: a walker's must be "
+            'its speed in m/s, above 0, and its longest pause in s, such as user="0.6 2"'
+        )
+    sites = (
+        s for s in range(model.nsite) if room_name(model.site(s).name).startswith(f"{name}_way")
+    )
+    way = [data.site_xpos[site] for site in sites]
+    places = [(float(x), float(y)) for x, y, _ in ([data.xpos[body], *way] if way else [])]
+    return Walker(speed, pause, tuple(places))
 
 
 def _along(data: mujoco.MjData, body: int) -> Drift:

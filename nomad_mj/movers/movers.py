@@ -4,16 +4,14 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-import shapely
 
 from nomad_mj.arenas import FloorPlan
 from nomad_mj.errors import StartError
 from nomad_mj.movers.bodies import Moving, MovingBody
+from nomad_mj.movers.floor import GAP, Floor
+from nomad_mj.movers.stroll import Stroll
 from nomad_mj.movers.walk import Walk
 from nomad_mj.types import FloatArray
-
-GAP = 0.02
-"""What an obstacle keeps from walls, from what stands and from other moving obstacles [m]."""
 
 ROBOT_GAP = 0.10
 """What an obstacle keeps from the robot, and from where it would stand at the goal [m]."""
@@ -21,10 +19,7 @@ ROBOT_GAP = 0.10
 START_GAP = 0.5
 """What an obstacle keeps from the robot when an episode starts [m]."""
 
-GOAL_CLEARANCE = 0.12
-"""What a moving goal leaves a robot that stands there [m], or as much as it does at its start."""
-
-_BATCH, _MOST_BATCHES = 64, 100
+_MOST_BATCHES = 100
 
 
 class Movers:
@@ -70,9 +65,7 @@ class Movers:
         self._moving = moving
         self._robot_radius = robot_radius
         self._radius: list[float] = self.radii.tolist()
-        self._rooms = _rooms(plan, self.start_goal, self._radius)
-        self._box = _box(plan, self.start_goal)
-        self._goal_space = _goal_space(plan, self.start_goal, robot_radius)
+        self._floor = Floor(plan, self.start_goal, self._radius, robot_radius)
         self._robot = (math.inf, math.inf)
         bodies = [*moving.obstacles, *([moving.goal] if moving.goal else [])]
         self.rows = np.array([body.row for body in bodies], dtype=np.intp)
@@ -103,8 +96,12 @@ class Movers:
         places: list[tuple[float, float]] = []
         for index, body in enumerate(self._moving.obstacles):
             places.append(self._find_place(index, body, places, obstacles_rng))
-        drifts = [body.drift for body in self._moving.obstacles]
+        bodies = self._moving.obstacles
+        drifts = [None if body.walker else body.drift for body in bodies]
         self._walk = Walk(drifts, places, obstacles_rng)
+        (free,) = obstacles_rng.spawn(1)
+        walkers = [body.walker for body in bodies]
+        self._stroll = Stroll(walkers, self._walk.places, self._floor.choose, free)
         self.obstacles = self._walk.array()
         goal = self._moving.goal
         self.goal = self.start_goal
@@ -126,6 +123,7 @@ class Movers:
             self.goal = self._goal_walk.array()[0]
         if self._radius:
             self._walk.advance(seconds, self._obstacle_may_be)
+            self._stroll.advance(seconds, self._obstacle_may_be)
             self.obstacles = self._walk.array()
 
     def body_places(self) -> FloatArray:
@@ -135,7 +133,7 @@ class Movers:
         return np.concatenate([self.obstacles, self.goal[None]]) - self._offsets
 
     def _goal_may_be(self, _: int, x: float, y: float) -> bool:
-        if not shapely.intersects_xy(self._goal_space, x, y):
+        if not self._floor.holds_goal(x, y):
             return False
         keep = self._robot_radius + ROBOT_GAP
         return all(
@@ -154,9 +152,8 @@ class Movers:
                 return False
         others = [*places[:index], *places[index + 1 :]]
         radii = [*self._radius[:index], *self._radius[index + 1 :]]
-        return self._is_clear(radius, (x, y), others, radii) and bool(
-            shapely.intersects_xy(self._rooms[index], x, y)
-        )
+        clear = self._is_clear(radius, (x, y), others, radii)
+        return clear and self._floor.holds(index, x, y)
 
     def _is_clear(
         self,
@@ -183,14 +180,12 @@ class Movers:
         rng: np.random.Generator,
     ) -> tuple[float, float]:
         """Return where an obstacle starts: at home if nothing is in the way, else at random."""
-        room, radius, radii = self._rooms[index], body.radius, self._radius[:index]
+        radius, radii = body.radius, self._radius[:index]
         apart = radius + self._robot_radius + START_GAP
-        low, high = self._box
         for batch in range(_MOST_BATCHES):
-            places = rng.uniform(low, high, (_BATCH, 2))
-            places = places[shapely.intersects_xy(room, places)]
             known = [body.home] if batch == 0 and body.home is not None else []
-            for place in (*known, *((x, y) for x, y in places.tolist())):
+            on_way = _along(body.walker.way, rng) if body.walker and body.walker.way else None
+            for place in (*known, *(on_way or self._floor.draw(index, rng))):
                 if math.dist(place, self._robot) >= apart and self._is_clear(
                     radius, place, others, radii
                 ):
@@ -205,40 +200,29 @@ class Movers:
         for index, body in enumerate(self._moving.obstacles):
             if body.home is None:
                 continue
-            inside = shapely.intersects_xy(self._rooms[index], *body.home)
-            if not inside or not self._is_clear(
+            what = f"moving obstacle {body.name!r} of radius {body.radius:g} m"
+            if not self._floor.holds(index, *body.home) or not self._is_clear(
                 body.radius, body.home, homes, self._radius[: len(homes)]
             ):
                 raise StartError(
-                    f"moving obstacle {body.name!r} of radius {body.radius:g} m at "
-                    f"({body.home[0]:g}, {body.home[1]:g}) is outside the room, in something or "
-                    "nearer the goal than a robot that stands there lets it; move it"
+                    f"{what} at ({body.home[0]:g}, {body.home[1]:g}) is outside the room, in "
+                    "something or nearer the goal than a robot that stands there lets it; move it"
                 )
             homes.append(body.home)
+            way = body.walker.way if body.walker else ()
+            for start, end in zip(way, [*way[1:], *way[:1]], strict=True):
+                if not self._floor.sees(index, start, end):
+                    raise StartError(
+                        f"{what} cannot walk straight from ({start[0]:g}, {start[1]:g}) to "
+                        f"({end[0]:g}, {end[1]:g}); put another way point in between, or make room"
+                    )
 
 
-def _rooms(
-    plan: FloorPlan, goal: FloatArray, radii: list[float]
-) -> list[shapely.Polygon | shapely.MultiPolygon]:
-    """Return where the centre of each obstacle can be, prepared for queries."""
-    if not radii:
-        return []
-    floor = plan.free_space(0.0, goal)
-    made = {radius: shapely.buffer(floor, -(radius + GAP)) for radius in set(radii)}
-    for room in made.values():
-        shapely.prepare(room)
-    return [made[radius] for radius in radii]
-
-
-def _box(plan: FloorPlan, goal: FloatArray) -> FloatArray:
-    """Return the rectangle in which obstacles start, lower and upper corner, (2, 2)."""
-    floor = plan.interior(0.0, goal) if plan.footprints else plan.free_space(0.0, goal)
-    return np.reshape(floor.bounds, (2, 2))
-
-
-def _goal_space(plan: FloorPlan, goal: FloatArray, radius: float) -> shapely.Polygon:
-    """Return where the goal can be, prepared for queries."""
-    spare = min(GOAL_CLEARANCE, 0.99 * float(plan.clearance(goal, radius)))
-    space = plan.free_space(radius + max(spare, 0.0), goal)
-    shapely.prepare(space)
-    return space
+def _along(
+    way: tuple[tuple[float, float], ...], rng: np.random.Generator
+) -> list[tuple[float, float]]:
+    """Draw places on the legs of a way."""
+    points = np.array(way)
+    leg, share = rng.integers(0, len(way), 16), rng.random((16, 1))
+    places = points[leg] + share * (points[(leg + 1) % len(way)] - points[leg])
+    return [(x, y) for x, y in places.tolist()]

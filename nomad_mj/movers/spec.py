@@ -8,8 +8,11 @@ import numpy as np
 from nomad_mj.arenas.names import MOVING
 from nomad_mj.errors import ConfigError
 from nomad_mj.movers.drift import MovingObstacles
+from nomad_mj.movers.stroll import Walkers
 
 _LOOK = (0.55, 0.47, 0.66, 1.0)  # none of the rooms' own colours
+_HEAD = (0.93, 0.80, 0.70, 1.0)
+_SHOULDER = 0.85  # of a figure's height
 
 
 def place_goal(spec: mujoco.MjSpec, goal: Sequence[float] | None, moving: bool) -> None:
@@ -88,29 +91,45 @@ def _replace(
 
 
 def add_obstacles(spec: mujoco.MjSpec, config: MovingObstacles) -> tuple[str, ...]:
-    """Add moving cylinders to a room, and return the names of their bodies."""
-    look = spec.add_material(name=_free_name(spec, f"{MOVING}_look"), rgba=_LOOK)
-    look.specular = look.shininess = 0.1
+    """Add moving cylinders, or figures that walk, to a room; return the names of their bodies."""
+    look = _look(spec, f"{MOVING}_look", _LOOK)
+    head = _look(spec, f"{MOVING}_head", _HEAD) if isinstance(config, Walkers) else ""
     names: list[str] = []
     turn = config.direction / 2
     for number in range(config.count):
         name = _free_name(spec, f"{MOVING}_{number}")
         body = spec.worldbody.add_body(
-            name=name,
-            mocap=True,
-            pos=[0.0, 0.0, config.height / 2],
-            quat=[np.cos(turn), 0.0, 0.0, np.sin(turn)],
+            name=name, mocap=True, quat=[np.cos(turn), 0.0, 0.0, np.sin(turn)]
         )
+        tall = config.height * (_SHOULDER if head else 1.0)
+        body.pos = [0.0, 0.0, tall / 2]
         body.add_geom(
             name=name,
             type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-            size=[config.radius, config.height / 2, 0.0],
-            material=look.name,
+            size=[config.radius, tall / 2, 0.0],
+            material=look,
             contype=1,
             conaffinity=1,
         )
+        if head:
+            half = (config.height - tall) / 2
+            body.add_geom(
+                type=mujoco.mjtGeom.mjGEOM_ELLIPSOID,
+                size=[0.5 * config.radius, 0.5 * config.radius, half],
+                pos=[0.0, 0.0, tall / 2 + half],
+                material=head,
+                contype=0,
+                conaffinity=0,
+            )
         names.append(name)
     return tuple(names)
+
+
+def _look(spec: mujoco.MjSpec, name: str, colour: tuple[float, ...]) -> str:
+    """Add a material of a colour; return its name."""
+    look = spec.add_material(name=_free_name(spec, name), rgba=colour)
+    look.specular = look.shininess = 0.1
+    return look.name
 
 
 def _free_name(spec: mujoco.MjSpec, wanted: str) -> str:

@@ -20,8 +20,8 @@ class Walk:
 
     Parameters
     ----------
-    drifts : sequence of Drift, length n
-        How each disc moves; their speeds must not be None.
+    drifts : sequence of Drift or None, length n
+        How each disc moves, with a speed that is not None; None for what something else moves.
     places : array_like, shape (n, 2)
         Where the discs are [m].
     rng : numpy.random.Generator
@@ -34,18 +34,18 @@ class Walk:
     """
 
     def __init__(
-        self, drifts: Sequence[Drift], places: npt.ArrayLike, rng: np.random.Generator
+        self, drifts: Sequence[Drift | None], places: npt.ArrayLike, rng: np.random.Generator
     ) -> None:
-        self._drifts = drifts
+        self._drifts = [(disc, drift) for disc, drift in enumerate(drifts) if drift]
         self._rng = rng
         self.places: list[tuple[float, float]] = [
             (x, y) for x, y in np.reshape(places, (-1, 2)).astype(np.float64).tolist()
         ]
         count = len(drifts)
-        self._course = [drift.direction for drift in drifts]
+        self._course = [drift.direction if drift else 0.0 for drift in drifts]
         self._heading, self._speed, self._left = [0.0] * count, [0.0] * count, [0.0] * count
-        for disc, drift in enumerate(drifts):
-            self._draw(disc)
+        for disc, drift in self._drifts:
+            self._draw(disc, drift)
             self._left[disc] = rng.uniform(0.0, drift.period)  # or all would turn at once
 
     def array(self) -> FloatArray:
@@ -62,10 +62,11 @@ class Walk:
         allowed : callable
             Whether the disc of an index may be at x, y [m], as all others are now.
         """
-        for disc, (x, y) in enumerate(self.places):
+        for disc, drift in self._drifts:
+            x, y = self.places[disc]
             self._left[disc] -= seconds
             if self._left[disc] <= 0:
-                self._draw(disc)
+                self._draw(disc, drift)
             step = self._speed[disc] * seconds
             heading = self._heading[disc]
             for way in (heading, 2 * self._course[disc] - heading):
@@ -75,11 +76,10 @@ class Walk:
                     break
             else:
                 self._course[disc] += math.pi
-                self._draw(disc)
+                self._draw(disc, drift)
 
-    def _draw(self, disc: int) -> None:
+    def _draw(self, disc: int, drift: Drift) -> None:
         """Draw speed and heading of the next period."""
-        drift = self._drifts[disc]
         assert drift.speed is not None
         speed, sideways = self._rng.uniform((0.0, -drift.spread), (drift.speed, drift.spread))
         self._speed[disc] = float(speed)

@@ -20,6 +20,7 @@ ROOMS = (
     "concave_room_deep",
     "corridor",
     "empty_room",
+    "hall",
     "moving_room",
     "paper_room",
 )
