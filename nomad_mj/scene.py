@@ -13,6 +13,7 @@ import shapely
 from nomad_mj.arenas import Arena, FloorPlan, check_arena
 from nomad_mj.assets import find_robot, find_room, models_dir
 from nomad_mj.errors import ConfigError, ModelError
+from nomad_mj.guard import check_size
 from nomad_mj.movers import (
     Moving,
     MovingGoal,
@@ -83,6 +84,7 @@ def _quietly() -> Generator[list[str], None, None]:
 
 
 def _read(kind: str, path: Path) -> mujoco.MjSpec:
+    check_size(kind, path)
     with _quietly() as said:
         try:
             spec = mujoco.MjSpec.from_file(str(path))

@@ -14,7 +14,7 @@ FLOORS = (
     ("types", "errors"),
     ("geometry", "_gl_probe"),
     ("perception", "motion", "_gl"),
-    ("values",),
+    ("values", "guard"),
     ("assets", "robots", "arenas"),
     ("movers", "rooms"),
     ("scene",),

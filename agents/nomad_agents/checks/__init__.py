@@ -1,7 +1,8 @@
 """Look a robot's or a room's file over before anything is learnt with it."""
 
+from nomad_agents.checks.calibration import calibrate, find_drift_faults
 from nomad_agents.checks.faults import find_faults
-from nomad_agents.checks.patterns import Drift, drive_patterns, find_drift_faults
+from nomad_agents.checks.patterns import Drift, drive_patterns
 from nomad_agents.checks.picture import draw_robot_card
 from nomad_agents.checks.tables import (
     drift_table,
@@ -13,6 +14,7 @@ from nomad_agents.checks.tables import (
 
 __all__ = [
     "Drift",
+    "calibrate",
     "draw_robot_card",
     "drift_table",
     "drive_patterns",

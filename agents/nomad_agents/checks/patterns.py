@@ -1,13 +1,13 @@
 """Test patterns: how far a robot gets from where it should be, and from where it believes it is."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 import nomad_mj
-from nomad_mj.motion import CarDrive, MotionConfig, Outcome, WheeledDrive, ramp_speed
-from nomad_mj.scene import CONTROL_TIMESTEP, Scene
+from nomad_mj.motion import CarDrive, MotionConfig, Outcome, ramp_speed
+from nomad_mj.scene import CONTROL_TIMESTEP
 from nomad_mj.tasks import MotorEnvironment, RangeNoise
 from nomad_mj.types import Travel
 
@@ -16,7 +16,6 @@ _START = (4.0, 4.0, 0.0)
 _ROOM = "empty_room"
 _CAREFUL = 0.5  # of the largest speed of turning
 _PATIENCE = 60.0  # [s] for a pattern
-_SLIP = 0.01  # of the way, or of the turn, that odometry may be off
 
 
 class Drift(NamedTuple):
@@ -32,6 +31,8 @@ class Drift(NamedTuple):
         From the robot to where its odometry puts it [m], and in heading [rad].
     turned : float
         By how much odometry has turned [rad].
+    stretch : float
+        True distance from the start per distance by odometry.
     seconds : float
         It took [s of simulated time].
     finished : bool
@@ -43,6 +44,7 @@ class Drift(NamedTuple):
     off_odometry: float
     off_heading: float
     turned: float
+    stretch: float
     seconds: float
     finished: bool
 
@@ -114,6 +116,8 @@ class _Driver:
             math.hypot(at.x - x, at.y - y),
             math.remainder(at.heading - heading, 2 * math.pi),
             self.turned,
+            math.hypot(at.x - _START[0], at.y - _START[1])
+            / max(math.hypot(x - _START[0], y - _START[1]), 1e-6),
             self.ticks * CONTROL_TIMESTEP,
             finished,
         )
@@ -159,28 +163,3 @@ def drive_patterns(robot: str | Path) -> list[Drift]:
     time_limit = {"time_limit": math.inf}
     with nomad_mj.load("motor", _ROOM, robot, options, time_limit) as env:
         return [pattern(_Driver(env)) for pattern in _PATTERNS]
-
-
-def find_drift_faults(scene: Scene, drifts: Sequence[Drift]) -> list[str]:
-    """Return what test patterns tell is wrong, one line each, with what would be better.
-
-    The calibration is that of J. Borenstein and L. Feng, "Measurement and correction of systematic
-    odometry errors in mobile robots", IEEE Trans. Robotics and Automation 12 (1996).
-    """
-    faults = [f"{drift.name}: did not come to its end" for drift in drifts if not drift.finished]
-    straight, turn, _ = drifts
-    if straight.off_odometry > _SLIP * _SIDE:
-        faults.append(
-            f"odometry is off by {1000 * straight.off_odometry:.0f} mm after {_SIDE:g} m straight "
-            "ahead: the wheels slip (castors that drag or carry the weight, weak friction), or "
-            "wheel_radius is wrong"
-        )
-    drive = scene.robot.drive
-    if isinstance(drive, WheeledDrive) and abs(turn.off_heading) > _SLIP * 2 * math.pi:
-        fault = f"odometry is off by {math.degrees(turn.off_heading):.0f} deg after a full turn"
-        if drive.kind == "differential":
-            arms = [row[2] / row[0] for row in drive.rows]
-            track = (max(arms) - min(arms)) * turn.turned / (turn.turned + turn.off_heading)
-            fault += f": say track: {track:.4g} under numbers in its data sheet"
-        faults.append(fault)
-    return faults
