@@ -38,6 +38,7 @@ def results_of(name: str) -> list[Result]:
         "fig14": ("", ways),
         "noise": ("±5 %", {}),
         "timing": ("", {"reactions": [[10, 1e-4]], "plannings": [[10, 4e-4]]}),
+        "robots": ("nomad200, paper_room", ways),
         "ablations": ("as is", {}),
     }
     case, pictures = cases[name]
@@ -71,6 +72,7 @@ FIGURES = {
     "fig14": ["paths", "learning"],
     "noise": ["cases"],
     "timing": ["times"],
+    "robots": ["paths"],
     "ablations": ["variants"],
 }
 

@@ -28,7 +28,8 @@ class Reproduce:
     """Repeat the paper's experiments over many seeds, beside the baselines, into one report.
 
     Experiments: fig6 fig7 fig8 fig9 fig10 fig11 fig12 fig13 fig14 noise timing, or all of these;
-    ablations (every reading of the text against its alternatives) by its own name only.
+    by their own names only robots (five robots in four rooms) and ablations (every reading of the
+    text against its alternatives).
     """
 
     experiments: Annotated[tuple[str, ...], tyro.conf.Positional] = (ALL,)

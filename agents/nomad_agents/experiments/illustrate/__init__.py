@@ -23,6 +23,7 @@ _PAINTERS: dict[str, tuple[Callable[[Material], list[Illustration]], ...]] = {
     "fig14": (rooms.paths, numbers.learning),
     "noise": (numbers.cases,),
     "timing": (numbers.timing,),
+    "robots": (rooms.fleet,),
     "ablations": (numbers.variants,),
 }
 _BEFORE = {"fig10": "fig9"}  # what an experiment's pictures are drawn beside

@@ -39,6 +39,16 @@ def paths(material: Material) -> list[Illustration]:
     return [Illustration(path, "Where the robot went: from the circles to the square.")]
 
 
+def fleet(material: Material) -> list[Illustration]:
+    """Draw where each robot went in each room, a robot a row."""
+    panels, _ = _panels(material, "ways")
+    if not panels:
+        return []
+    path = material.path("paths")
+    draw_paths(panels, path, len({panel.scene.arena.name for panel in panels}))
+    return [Illustration(path, "Where each robot went in each room, from the circles.")]
+
+
 def actions(material: Material) -> list[Illustration]:
     """Draw the action at every place."""
     panels, columns = _panels(material, "actions")

@@ -13,6 +13,7 @@ from nomad_agents.experiments.paper.moving import GoalMoves, ObstaclesMove
 from nomad_agents.experiments.paper.noise import Noise
 from nomad_agents.experiments.paper.odometry import WrongOdometry
 from nomad_agents.experiments.paper.places import Adapting, OtherPlaces
+from nomad_agents.experiments.paper.robots import OtherRobots
 from nomad_agents.experiments.paper.timing import Timing
 
 EXPERIMENTS: dict[str, Experiment] = {
@@ -29,7 +30,8 @@ EXPERIMENTS: dict[str, Experiment] = {
         NoIntensity(),
         Noise(),
         Timing(),
+        OtherRobots(),
         Ablations(),
     )
 }
-EXTRA = (Ablations.name,)  # longer than all the others together: asked for by name only
+EXTRA = (OtherRobots.name, Ablations.name)  # beyond the paper, and long: by their names only
