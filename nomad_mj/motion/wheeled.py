@@ -36,6 +36,8 @@ class WheeledDrive:
         Command of each motor per speed of its wheel on the floor [1/(m/s)].
     fastest : tuple of float
         Largest speed of each wheel on the floor [m/s].
+    axle : float
+        How far behind the robot's origin the axle of a differential drive is [m].
     sees_behind : bool
         Whether range sensors look back: only then does it drive backwards into the unknown.
     """
@@ -45,14 +47,14 @@ class WheeledDrive:
     rows: tuple[tuple[float, float, float], ...]
     gains: tuple[float, ...]
     fastest: tuple[float, ...]
+    axle: float = 0.0
     sees_behind: bool = False
 
-    @property
+    @cached_property
     def kind(self) -> str:
         """``"omni"`` if the robot can go sideways, else ``"differential"``."""
-        return (
-            "omni" if np.linalg.matrix_rank(np.array(self.rows), tol=1e-3) == 3 else "differential"
-        )
+        rank = np.linalg.matrix_rank(np.array(self.rows), tol=1e-3)
+        return "omni" if rank == 3 else "differential"
 
     @property
     def encoders(self) -> tuple[str, ...]:
@@ -70,6 +72,8 @@ class WheeledDrive:
         forward, sideways, turned = (
             sum(share * way for share, way in zip(row, ways, strict=True)) for row in self._inverse
         )
+        if self.axle:  # which goes straight ahead, so the origin swings about it
+            sideways += self.axle * turned
         return Travel(forward, sideways, heading + turned, heading + turned)
 
     def move(

@@ -11,6 +11,7 @@ import numpy as np
 
 from nomad_mj.errors import ModelError
 from nomad_mj.robots.sheet import MadeRing, Sheet
+from nomad_mj.robots.steadying import steady_wheels
 
 _UNRULED = ("steer", "turret")  # motors whose angle is read, not their way
 
@@ -39,6 +40,7 @@ def adopt(spec: mujoco.MjSpec, sheet: Sheet, robot: str) -> None:
     for name in _rename_motors(spec, sheet, robot):
         _encode(spec, name)
     _make_servos(spec, sheet)
+    steady_wheels(spec)
     for name, value in sheet.numbers.items():
         for old in [n for n in spec.numerics if n.name == name]:
             spec.delete(old)

@@ -185,4 +185,5 @@ def wheeled_drive(
         tuple((row[0], row[1], row[2]) for row in rows.tolist()),
         tuple(wheel.gain for wheel in wheels),
         tuple(fastest),
+        0.0 if rank == 3 else -float(np.mean([wheel.place[0] for wheel in wheels])),
     )

@@ -44,7 +44,6 @@ ROBOT = (
         "joint 'steer' must be a hinge",
     ),
     ('ctrlrange="-0.5 0.5"', "", "actuator 'translate' needs a ctrlrange"),
-    ('name="radius"', 'name="width"', "lacks its radius: add <custom>"),
     (
         '<rangefinder name="lidar" site="lidar" cutoff="3"/>',
         "",
@@ -58,9 +57,15 @@ ROBOT = (
     (
         '<joint name="turret" axis="0 0 1"/>',
         '<joint name="turret" axis="0 0 1"/></body><body name="mast" pos="0 0 0.35">',
-        "the sites of 'lidar' must be in the body of the joint 'turret'",
+        "the sites of 'lidar' must be in the body 'turret'",
     ),
     ('data="0.2"', 'data="0.5"', "a robot of radius 0.5 m at site "),
+)
+
+
+CART = (
+    ("[left_motor,", "[left,", "has no actuator 'left'; there are: left_motor, right_motor"),
+    ("motors:", "# ", "has no drive: it needs velocity servos"),
 )
 
 
@@ -85,11 +90,30 @@ def test_mistakes_bring_the_message_of_the_page(
     kind: str, old: str, new: str, told: str, tmp_path: Path
 ) -> None:
     page = f"your-own-{kind}.md"
-    text = model(page)
+    text = model(page, {"room": 0, "robot": 1}[kind])
     assert old in text
     (tmp_path / "own.xml").write_text(text.replace(old, new))
     assert told in error_of(**{kind: tmp_path / "own.xml"})
     assert f"`{told}`" in (DOCS / page).read_text()
+
+
+@pytest.mark.parametrize(("old", "new", "told"), CART)
+def test_mistakes_in_a_data_sheet_do_too(old: str, new: str, told: str, tmp_path: Path) -> None:
+    page = (DOCS / "your-own-robot.md").read_text()
+    sheet = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)[0]
+    assert old in sheet
+    (tmp_path / "cart.xml").write_text(model("your-own-robot.md"))
+    (tmp_path / "cart.yaml").write_text(sheet.replace(old, new))
+    assert told in error_of(robot=tmp_path / "cart.xml")
+    assert f"`{told}`" in page
+
+
+def test_a_robot_that_is_fixed(tmp_path: Path) -> None:
+    text = model("your-own-robot.md", 1)
+    (tmp_path / "own.xml").write_text(text.replace('type="slide" axis="1 0 0"', 'axis="1 0 0"'))
+    told = "cannot go everywhere: give it a free joint"
+    assert told in error_of(robot=tmp_path / "own.xml")
+    assert f"`{told}`" in (DOCS / "your-own-robot.md").read_text()
 
 
 @pytest.mark.parametrize(("old", "new", "told"), MOVING)
@@ -114,7 +138,7 @@ def test_a_room_that_is_not_there(room: str, told: str) -> None:
 
 
 def test_a_ring_that_loses_echoes_and_is_not_there(tmp_path: Path) -> None:
-    (tmp_path / "own.xml").write_text(model("your-own-robot.md"))
+    (tmp_path / "own.xml").write_text(model("your-own-robot.md", 1))
     noise = {"range_noise": nomad_mj.RangeNoise(grazing=0.5)}
     told = error_of(robot=tmp_path / "own.xml", task_kwargs=noise)
     assert told == "specular ring 'sonar': the robot has no such ring; rings it has: lidar"
@@ -123,7 +147,7 @@ def test_a_ring_that_loses_echoes_and_is_not_there(tmp_path: Path) -> None:
 
 def test_a_checkpoint_for_other_sensors(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     robot, checkpoint = tmp_path / "my_robot.xml", tmp_path / "few.npz"
-    robot.write_text(model("your-own-robot.md"))
+    robot.write_text(model("your-own-robot.md", 1))
     assert main(["train", "--max-decisions", "1", "--out", str(checkpoint)]) == 0
     assert main(["evaluate", "--agent", str(checkpoint), "--robot", str(robot)]) == 2
     assert "is for other sensors: " in capsys.readouterr().err

@@ -1,9 +1,10 @@
 """Every snippet of the documentation runs, and prints what the page says it prints.
 
-By the fence: `xml` is a room or robot, written to the file that its first line names and loaded;
-`python` and `sh` are run, in the order of the page, in one folder; `text output` is what the
-snippet before prints. A second word `gl` asks for OpenGL, `screen` for a display: without one the
-snippet is compiled only. Plain `text`, `mermaid` and others are not run.
+By the fence: `yaml` is written, first of all, to the file that its first line names; `xml` is a
+room or robot, written likewise and loaded; `python` and `sh` are run, in the order of the page, in
+one folder; `text output` is what the snippet before prints. A second word `gl` asks for OpenGL,
+`screen` for a display: without one the snippet is compiled only. Plain `text`, `mermaid` and others
+are not run.
 """
 
 import contextlib
@@ -27,6 +28,7 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGES = sorted(DOCS.glob("*.md"))
 FENCE = re.compile(r"^```(\w+)(?: (\w+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"<!-- (\S+\.xml) -->")
+SHEET = re.compile(r"# (\S+\.yaml)\n")
 
 
 class Snippet(NamedTuple):
@@ -80,6 +82,9 @@ def test_snippets_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {"__name__": page.stem}
     printed: str | None = None
+    for snippet in snippets(page):
+        if snippet.language == "yaml" and (name := SHEET.match(snippet.text)):
+            Path(name[1]).write_text(snippet.text)
     for number, snippet in enumerate(snippets(page), 1):
         where = f"{page.name}, snippet {number}"
         if snippet.language == "xml":

@@ -1,0 +1,107 @@
+"""`nomad-mj check`: what was found, what is missing, how it drives; for every robot and rooms."""
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from nomad_agents.checks import Drift, drive_patterns, find_faults
+from nomad_agents.cli.main import main
+
+from nomad_mj.assets import list_robots
+from nomad_mj.scene import build_scene
+
+RingRobot = Callable[..., Path]
+# From the true pose to odometry's after a square of 2 m: [m], [deg].
+CLOSE = {
+    "nomad200": (0.001, 0.1),
+    "omnibot": (0.001, 0.1),
+    "nomad200_wheels": (0.01, 0.5),
+    "pioneer": (0.01, 0.5),
+    "khepera": (0.01, 0.5),
+    "racer": (0.05, 3.0),  # it slips in its shuttles
+}
+
+
+def checked(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, dict[str, Any], str]:
+    code = main(["check", *arguments, "--json"])
+    out, err = capsys.readouterr()
+    return code, json.loads(out), err
+
+
+def test_every_robot_is_driven_in_a_pattern() -> None:
+    assert set(CLOSE) == set(list_robots())
+
+
+@pytest.mark.parametrize("robot", CLOSE)
+def test_test_patterns_end_where_they_should(robot: str) -> None:
+    way, heading = CLOSE[robot]
+    drifts: list[Drift] = drive_patterns(robot)
+    assert [drift.finished for drift in drifts] == [True] * 3
+    straight, _, square = drifts
+    assert straight.off_target < 0.01
+    assert square.off_odometry < way and square.off_target < max(way, 0.012)
+    assert abs(math.degrees(square.off_heading)) < heading
+
+
+def test_a_robot(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, found, told = checked(capsys, "pioneer", "--out", str(tmp_path), "--no-drive")
+    assert found["drive"] == "differential" and found["motors"] == ["left", "right"]
+    assert found["rings"] == {"sonar": 16} and found["bumpers"] == 10
+    assert code == (1 if found["faults"] else 0) and found["patterns"] == []
+    for word in ("a free joint", "-12.3 to 12.3", "10 30 50 90", "0.28 m"):
+        assert word in told
+    assert (tmp_path / "check_pioneer.png").stat().st_size > 10_000
+    assert (tmp_path / "check_pioneer.pdf").stat().st_size > 5_000
+
+
+def test_a_room(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, found, told = checked(capsys, "corridor", "--robot", "khepera", "--out", str(tmp_path))
+    assert code == 0 and found["room"] == "corridor" and found["starts"] > 0
+    assert "Nothing is missing" in told
+    assert (tmp_path / "check_corridor.png").stat().st_size > 5_000
+
+
+FAULTS = {
+    "blind": ([0, 90], (), "no cone covers"),
+    "short": (range(0, 360, 30), ('cutoff="1.5"', 'cutoff="0.9"'), "see 0.9 m, moves are up to"),
+    "inside": (
+        range(0, 360, 30),
+        (
+            '<geom name="shell"',
+            '<geom size="0.4" mass="0" pos="0 0 0.3" contype="0"/><geom name="shell"',
+        ),
+        "rays see the robot itself",
+    ),
+    "numb": (range(0, 360, 30), ('<touch name="bumper_0" site="bumper"/>', ""), "no bumpers"),
+}
+
+
+@pytest.mark.parametrize(("bearings", "change", "told"), FAULTS.values(), ids=FAULTS.keys())
+def test_what_spoils_learning_is_told(
+    ring_robot: RingRobot, bearings: range, change: tuple[str, str], told: str
+) -> None:
+    path = ring_robot(list(bearings), *([change] if change else []))
+    faults = find_faults(build_scene("empty_room", path))
+    assert any(told in fault for fault in faults), faults
+
+
+@pytest.mark.parametrize(
+    ("file", "told"),
+    [
+        ("nobot", "unknown robot or room 'nobot'; there are: clutter, "),
+        ("no/bot.xml", "file 'no/bot.xml' does not exist"),
+    ],
+)
+def test_mistakes_are_one_line(file: str, told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", file]) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and told in err and err.count("\n") == 1
+
+
+def test_a_folder_that_cannot_be_made(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "file").touch()
+    assert main(["check", "corridor", "--out", str(tmp_path / "file")]) == 2
+    assert "cannot write" in capsys.readouterr().err
