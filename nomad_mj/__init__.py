@@ -9,11 +9,27 @@ from nomad_mj.envs import PathFinding, PathFindingConfig, load  # noqa: E402
 from nomad_mj.errors import NomadError  # noqa: E402
 from nomad_mj.motion import Outcome  # noqa: E402
 from nomad_mj.movers import MovingGoal, MovingObstacles, Walkers  # noqa: E402
-from nomad_mj.tasks import MotorConfig, MotorEnvironment, OdometryNoise, RangeNoise  # noqa: E402
+from nomad_mj.tasks import (  # noqa: E402
+    BumperNoise,
+    Crosstalk,
+    FiringOrder,
+    Gyroscope,
+    InfraredEffects,
+    MotorConfig,
+    MotorEnvironment,
+    OdometryNoise,
+    RangeNoise,
+    SonarEffects,
+)
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "BumperNoise",
+    "Crosstalk",
+    "FiringOrder",
+    "Gyroscope",
+    "InfraredEffects",
     "MotorConfig",
     "MotorEnvironment",
     "MovingGoal",
@@ -24,6 +40,7 @@ __all__ = [
     "PathFinding",
     "PathFindingConfig",
     "RangeNoise",
+    "SonarEffects",
     "Walkers",
     "list_robots",
     "list_rooms",

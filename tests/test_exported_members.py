@@ -7,8 +7,9 @@ import pytest
 
 PUBLIC = {
     "nomad_mj": (
-        "MotorConfig MotorEnvironment MovingGoal MovingObstacles NomadError OdometryNoise Outcome "
-        "PathFinding PathFindingConfig RangeNoise Walkers list_robots list_rooms load"
+        "BumperNoise Crosstalk FiringOrder Gyroscope InfraredEffects MotorConfig MotorEnvironment "
+        "MovingGoal MovingObstacles NomadError OdometryNoise Outcome PathFinding PathFindingConfig "
+        "RangeNoise SonarEffects Walkers list_robots list_rooms load"
     ),
     "nomad_mj.perception": (
         "GridSpec Percept SituationSpec attraction_force cell_centres certainty_grid code_grid "
@@ -32,8 +33,8 @@ PUBLIC = {
         "read_sheet report_surfaces robot_geoms set_rays_per_cone unclip_surfaces"
     ),
     "nomad_mj.tasks": (
-        "MotorConfig MotorEnvironment MotorTask NavigationPhysics OdometryNoise RangeNoise Start "
-        "resolve_start"
+        "BumperNoise Crosstalk FiringOrder Gyroscope InfraredEffects MotorConfig MotorEnvironment "
+        "MotorTask NavigationPhysics OdometryNoise RangeNoise SonarEffects Start resolve_start"
     ),
     "nomad_mj.envs": "DEFAULT_ROBOT DEFAULT_ROOM TASKS PathFinding PathFindingConfig load",
 }

@@ -38,7 +38,9 @@ class MotorEnvironment(control.Environment):
         if not time_limit > 0:
             raise ConfigError(f"time limit {time_limit}: must be above 0 s")
         super().__init__(
-            NavigationPhysics.from_scene(task.scene, task.config.range_noise.grazing),
+            NavigationPhysics.from_scene(
+                task.scene, task.config.range_noise.grazing, task.config.infrared
+            ),
             task,
             time_limit=time_limit,
             control_timestep=CONTROL_TIMESTEP,

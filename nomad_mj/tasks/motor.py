@@ -2,7 +2,6 @@
 
 import math
 from collections import OrderedDict
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,37 +11,16 @@ from dm_env import specs
 from nomad_mj.errors import ConfigError
 from nomad_mj.movers import Movers
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
-from nomad_mj.tasks.noise import OdometryNoise, RangeNoise, RangeNoiseStream
+from nomad_mj.tasks.bumpers import StickyBumpers
+from nomad_mj.tasks.config import MotorConfig
+from nomad_mj.tasks.gyroscope import GyroscopeStream
 from nomad_mj.tasks.odometry import Odometry
 from nomad_mj.tasks.physics import NavigationPhysics
+from nomad_mj.tasks.ranging import Ranging
 from nomad_mj.tasks.starts import Start, resolve_start
-from nomad_mj.types import FloatArray, Travel
+from nomad_mj.types import FloatArray, Pose, Travel
 
 REWARD_MARGIN = 5.0  # [m] from the goal at which the reward has fallen to 0.1
-
-
-@dataclass(frozen=True)
-class MotorConfig:
-    """Options of the motor task.
-
-    Attributes
-    ----------
-    range_noise, odometry_noise
-        How the sensors err.
-    goal_radius : float
-        The goal is reached when the robot's centre is this near [m].
-    ends_at_goal : bool
-        Whether reaching the goal ends the episode.
-    """
-
-    range_noise: RangeNoise = field(default_factory=RangeNoise)
-    odometry_noise: OdometryNoise = field(default_factory=OdometryNoise)
-    goal_radius: float = 0.2
-    ends_at_goal: bool = True
-
-    def __post_init__(self) -> None:
-        if not self.goal_radius > 0:
-            raise ConfigError(f"goal radius {self.goal_radius}: must be above 0 m")
 
 
 class MotorTask(control.Task):
@@ -90,6 +68,7 @@ class MotorTask(control.Task):
             raise ConfigError(
                 "range noise grazing: needs a scene that was built with its specular_rings"
             )
+        self._ranging = Ranging(self.config.range_noise, self.config.sonar, scene.robot)
         self._start: Start = None
         self.seed(random)
         self._slices: list[tuple[str, int, int]] = []
@@ -122,8 +101,9 @@ class MotorTask(control.Task):
     def _begin(self, physics: NavigationPhysics | None) -> None:
         """Set up the streams and sensors of an episode; place the robot if there is a physics."""
         key = (*self._seed.spawn_key, self._episode)
-        streams = np.random.SeedSequence(self._seed.entropy, spawn_key=key).spawn(6)
-        choice, ranges, odometry, free, *moving = map(np.random.default_rng, streams)
+        # What comes later in this list must not change the bits of what comes before.
+        streams = np.random.SeedSequence(self._seed.entropy, spawn_key=key).spawn(10)
+        choice, ranges, odometry, free, *moving = map(np.random.default_rng, streams[:6])
         self.random = free
         start = resolve_start(self.scene, self._start, choice)
         if self.movers is not None:
@@ -133,13 +113,31 @@ class MotorTask(control.Task):
             physics.place(start)
             self._episode += 1
             self._start = None
-        config, layout = self.config, self.scene.robot.layout
-        self._noise = RangeNoiseStream(config.range_noise, layout.count, ranges)
-        self._odometry = Odometry(start, config.odometry_noise, odometry)
+        self._ranging.start(ranges, *streams[6:8])
+        self._err(start, odometry, *streams[8:])
         self._observation: OrderedDict[str, FloatArray] | None = None
-        self.ranges: FloatArray = np.zeros(layout.count)
+        self.ranges: FloatArray = np.zeros(self.scene.robot.layout.count)
         self.travel = Travel(0.0, 0.0, start.heading, start.heading)
         self.start_pose = start
+
+    def _err(
+        self,
+        start: Pose,
+        odometry: np.random.Generator,
+        bumpers: np.random.SeedSequence,
+        gyroscope: np.random.SeedSequence,
+    ) -> None:
+        """Set up what errs beside the range sensors, for an episode that starts there."""
+        config = self.config
+        self._bumpers = self._gyroscope = None
+        weight = 0.0
+        if config.bumper_noise.active:
+            rng = np.random.default_rng(bumpers)
+            self._bumpers = StickyBumpers(config.bumper_noise, len(self.scene.robot.bumpers), rng)
+        if config.gyroscope is not None:
+            rng, weight = np.random.default_rng(gyroscope), config.gyroscope.weight
+            self._gyroscope = GyroscopeStream(config.gyroscope, start.heading, rng)
+        self._odometry = Odometry(start, config.odometry_noise, odometry, weight)
 
     def initialize_episode(self, physics: NavigationPhysics) -> None:
         """Place the robot and reseed the sensors."""
@@ -189,19 +187,20 @@ class MotorTask(control.Task):
         return self._observation.copy()
 
     def _sense(self, physics: NavigationPhysics) -> "OrderedDict[str, FloatArray]":
-        rays = self.scene.robot.rays
-        ranges = physics.cone_ranges() * self._noise.factors()
-        np.minimum(np.maximum(ranges, rays.minimum, out=ranges), rays.maximum, out=ranges)
-        self.ranges = ranges
+        self.ranges = ranges = self._ranging.read(physics)
         encoders = physics.encoders()
         travel = self.scene.robot.drive.travel(encoders, self.travel.heading)
-        self._odometry.update(travel)
+        turned = None
+        if self._gyroscope is not None:
+            turned = self._gyroscope.turned(physics.pose().heading)
+        self._odometry.update(travel, turned)
         self.travel = travel
         odometry = self._odometry.reading()
         result: OrderedDict[str, FloatArray] = OrderedDict()
         for name, first, last in self._slices:
             result[name] = ranges[first:last]
-        result["bumpers"] = physics.bumpers()
+        bumpers = physics.bumpers()
+        result["bumpers"] = bumpers if self._bumpers is None else self._bumpers.tell(bumpers)
         result["encoders"] = encoders
         result["odometry"] = odometry
         result["goal"] = self._goal - odometry[:2]

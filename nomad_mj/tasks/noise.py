@@ -68,16 +68,29 @@ class OdometryNoise:
     position : float
         Each coordinate reported is wrong by U[-position, position] [m], anew at each reading
         (Fig 8 of the paper).
+    heading_per_metre : float
+        The heading that is reported turns by so much with each metre forward, and back again on
+        the way back [rad/m]: what unequal wheels do, the worst of the systematic errors (J.
+        Borenstein and L. Feng, "Measurement and correction of systematic odometry errors in mobile
+        robots", IEEE Trans. Robotics and Automation 12 (1996)).
+    heading_per_second : float
+        And by so much with each second [rad/s], even where the robot stands: a turret that creeps
+        (section 7.1 of the paper). A `Gyroscope` corrects both.
     """
 
     distance: float = 0.0
     heading: float = 0.0
     position: float = 0.0
+    heading_per_metre: float = 0.0
+    heading_per_second: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("distance", "heading", "position"):
             if not getattr(self, name) >= 0:
                 raise ConfigError(f"odometry noise {name} {getattr(self, name)}: must be >= 0")
+        for name in ("heading_per_metre", "heading_per_second"):
+            if not math.isfinite(getattr(self, name)):
+                raise ConfigError(f"odometry noise {name} {getattr(self, name)}: must be finite")
 
 
 class RangeNoiseStream:

@@ -11,6 +11,7 @@ from dm_control.rl.control import PhysicsError
 from nomad_mj.motion import SynchroDrive
 from nomad_mj.robots import PREFIX, RobotDescription
 from nomad_mj.scene import Scene
+from nomad_mj.tasks.infrared import Infrared, InfraredEffects
 from nomad_mj.types import FloatArray, IntArray, Pose
 
 _MISS = 1e6  # [m]; the engine reads -1 where a ray hits nothing
@@ -21,12 +22,22 @@ class NavigationPhysics(Physics):
 
     robot: RobotDescription
     grazing: float | None
+    infrared: Infrared | None
 
     @classmethod
-    def from_scene(cls, scene: Scene, grazing: float | None = None) -> "NavigationPhysics":
-        """Return a new simulation of `scene`; `grazing` as of `RangeNoise`."""
+    def from_scene(
+        cls, scene: Scene, grazing: float | None = None, infrared: InfraredEffects | None = None
+    ) -> "NavigationPhysics":
+        """Return a new simulation of `scene`; `grazing` as of `RangeNoise`.
+
+        Raises
+        ------
+        ConfigError
+            The robot lacks a ring of `infrared`.
+        """
+        light = Infrared(infrared, scene.model, scene.robot) if infrared is not None else None
         physics = cls.from_model(wrapper.MjModel(scene.model))
-        physics.robot, physics.grazing = scene.robot, grazing
+        physics.robot, physics.grazing, physics.infrared = scene.robot, grazing, light
         physics._bind()
         return physics
 
@@ -38,15 +49,15 @@ class NavigationPhysics(Physics):
     def copy(self, share_model: bool = False) -> "NavigationPhysics":
         """Return an independent copy of this simulation in its present state."""
         other: NavigationPhysics = super().copy(share_model)
-        other.robot, other.grazing = self.robot, self.grazing
+        other.robot, other.grazing, other.infrared = self.robot, self.grazing, self.infrared
         other._bind()
         return other
 
     def __getstate__(self) -> Any:
-        return super().__getstate__(), self.robot, self.grazing
+        return super().__getstate__(), self.robot, self.grazing, self.infrared
 
     def __setstate__(self, state: Any) -> None:
-        data, self.robot, self.grazing = state
+        data, self.robot, self.grazing, self.infrared = state
         super().__setstate__(data)
 
     def free(self) -> None:
@@ -137,7 +148,8 @@ class NavigationPhysics(Physics):
     def cone_ranges(self) -> FloatArray:
         """Return each cone's shortest ray, (C,) [m] from the perimeter; `_MISS` and over: none.
 
-        Rays of specular rings whose echo is lost count as a miss, see `RangeNoise.grazing`.
+        Rays of specular rings whose echo is lost count as a miss, see `RangeNoise.grazing`; those
+        of infrared rings are as long as the light makes them seem, see `InfraredEffects`.
         """
         rays = self.robot.rays
         # mode="clip": without a check of the indices, which would go through another buffer.
@@ -147,6 +159,8 @@ class NavigationPhysics(Physics):
             surfaces = self._sensordata.take(self._surfaces).reshape(-1, 2, 3)
             incidence = np.abs(np.multiply.reduce(surfaces, axis=1).sum(axis=1))
             values[rays.specular[incidence < math.cos(self.grazing)]] = _MISS
+        if self.infrared is not None:
+            self.infrared.judge(values, *self._raw)
         cones = np.minimum.reduceat(values, rays.first)
         # The engine cuts what lies farther off to the maximum.
         np.copyto(cones, _MISS, where=cones >= rays.maximum)
