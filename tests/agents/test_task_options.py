@@ -19,7 +19,17 @@ from nomad_agents.cli.record import Record
 from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.cli.train import Train
 
-from nomad_mj import OdometryNoise, RangeNoise
+from nomad_mj import (
+    BumperNoise,
+    Crosstalk,
+    FiringOrder,
+    Gyroscope,
+    InfraredEffects,
+    MotorConfig,
+    OdometryNoise,
+    RangeNoise,
+    SonarEffects,
+)
 from nomad_mj.errors import CheckpointError, ConfigError, NomadError
 
 GOLDEN = Path(__file__).parent / "data" / "checkpoint_v1.npz"
@@ -36,7 +46,7 @@ def test_every_command_that_drives_has_them_all(command: type[TaskOptions]) -> N
 def test_without_options_the_task_is_the_papers() -> None:
     with TaskOptions().path_finding() as env:
         config = env.motor.task.config
-        assert config.range_noise == RangeNoise() and config.odometry_noise == OdometryNoise()
+        assert config == MotorConfig(ends_at_goal=False)
         assert (env.scene.arena.name, env.scene.robot.name) == ("paper_room", "nomad200")
 
 
@@ -48,6 +58,33 @@ def test_errors_of_the_sensors_reach_the_task() -> None:
         config = env.motor.task.config
         assert config.range_noise == RangeNoise("gaussian", 0.3, grazing=math.radians(30))
         assert config.odometry_noise == OdometryNoise(position=0.5)
+
+
+def test_what_sensors_suffer_reaches_the_task() -> None:
+    options = TaskOptions(
+        room="empty_room",
+        sonar_per_step=2,
+        spread_firing=True,
+        crosstalk=0.2,
+        dropout=0.1,
+        infrared_by_colour=True,
+        sticky_bumpers=0.5,
+        heading_drift=3.0,
+        gyroscope=True,
+    )
+    with options.path_finding() as env:
+        assert env.motor.task.config == MotorConfig(
+            sonar=SonarEffects(
+                firing=FiringOrder(2, "spread"), crosstalk=Crosstalk(0.2), dropout=0.1
+            ),
+            infrared=InfraredEffects(),
+            bumper_noise=BumperNoise(hold=0.5),
+            odometry_noise=OdometryNoise(heading_per_metre=math.radians(3)),
+            gyroscope=Gyroscope(),
+            ends_at_goal=False,
+        )
+        env.reset(seed=0)
+        env.step((0.0, 1.0))
 
 
 def test_the_goal_and_what_moves_reach_the_task() -> None:
@@ -74,6 +111,12 @@ def test_the_goal_and_what_moves_reach_the_task() -> None:
         ({"grazing": 91.0}, "grazing 91: must be above 0 and at most 90 degrees"),
         ({"grazing": math.nan}, "grazing nan: must be above 0"),
         ({"odometry_error": -0.1}, "odometry noise position -0.1: must be >= 0"),
+        ({"sonar_per_step": -1}, "firing order per_step -1: must be 1, 2, 3, ..."),
+        ({"spread_firing": True}, "spread firing: needs --sonar-per-step, how many fire together"),
+        ({"crosstalk": 1.5}, "crosstalk probability 1.5: must be in [0, 1]"),
+        ({"dropout": math.nan}, "sonar dropout nan: must be in [0, 1]"),
+        ({"sticky_bumpers": -1.0}, "bumper noise hold -1.0: must be 0 s or more"),
+        ({"heading_drift": math.inf}, "odometry noise heading_per_metre inf: must be finite"),
         ({"goal": "8"}, "goal '8': must be X,Y in metres, such as 8,2.5"),
         ({"goal": "8,2,1"}, "goal '8,2,1': must be X,Y in metres"),
         ({"goal": "east"}, "goal 'east': must be X,Y in metres"),
@@ -94,6 +137,9 @@ conditions = st.builds(
     gaussian_noise=st.booleans(),
     grazing=st.sampled_from([30.0, 90.0]),
     odometry_error=st.sampled_from([0.0, 0.5]),
+    sonar_per_step=st.sampled_from([0, 4]),
+    dropout=st.sampled_from([0.0, 0.1]),
+    gyroscope=st.booleans(),
 )
 
 

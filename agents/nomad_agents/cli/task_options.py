@@ -8,7 +8,18 @@ from typing import Any
 
 import nomad_mj
 from nomad_agents.cli.parsing import parse_place
-from nomad_mj import MovingGoal, MovingObstacles, OdometryNoise, RangeNoise
+from nomad_mj import (
+    BumperNoise,
+    Crosstalk,
+    FiringOrder,
+    Gyroscope,
+    InfraredEffects,
+    MovingGoal,
+    MovingObstacles,
+    OdometryNoise,
+    RangeNoise,
+    SonarEffects,
+)
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, PathFinding
 from nomad_mj.errors import CheckpointError, ConfigError
 
@@ -37,6 +48,22 @@ class TaskOptions:
     """Sonar echoes of what is struck farther from square on than this, in degrees, are lost."""
     odometry_error: float = 0.0
     """The position by odometry is wrong by up to this in x and y, in metres, anew each time."""
+    sonar_per_step: int = 0
+    """So many sonars fire in a control step, the others keep their last readings; 0 for all."""
+    spread_firing: bool = False
+    """Sonars that fire together are far apart, not neighbours; with --sonar-per-step."""
+    crosstalk: float = 0.0
+    """Probability with which a sonar hears the pulses of neighbours that fire together with it."""
+    dropout: float = 0.0
+    """Probability with which a sonar hears no echo and reads its maximum."""
+    infrared_by_colour: bool = False
+    """Dark obstacles seem farther to infrared sensors, or are not seen at all."""
+    sticky_bumpers: float = 0.0
+    """Bumpers read pressed for so many seconds after the last touch."""
+    heading_drift: float = 0.0
+    """The heading by odometry turns by so many degrees with each metre driven."""
+    gyroscope: bool = False
+    """A gyroscope corrects the heading by odometry."""
 
     @contextmanager
     def path_finding(self) -> Generator[PathFinding, None, None]:
@@ -49,18 +76,40 @@ class TaskOptions:
             env.close()
 
     def _task_kwargs(self) -> dict[str, Any]:
-        if not 0 < self.grazing <= _EVERY_ECHO:
-            raise ConfigError(f"grazing {self.grazing:g}: must be above 0 and at most 90 degrees")
-        angle = math.radians(self.grazing) if self.grazing < _EVERY_ECHO else None
-        kind = "gaussian" if self.gaussian_noise else "uniform"
         moving: dict[str, Any] = {"moving_goal": MovingGoal()} if self.moving_goal else {}
         if self.moving_obstacles:
             moving["moving_obstacles"] = MovingObstacles(count=self.moving_obstacles)
+        return {**moving, **self._sensor_kwargs()}
+
+    def _sensor_kwargs(self) -> dict[str, Any]:
+        """Return how the sensors err."""
+        if not 0 < self.grazing <= _EVERY_ECHO:
+            raise ConfigError(f"grazing {self.grazing:g}: must be above 0 and at most 90 degrees")
+        angle = math.radians(self.grazing) if self.grazing < _EVERY_ECHO else None
+        drift = math.radians(self.heading_drift)
         return {
-            **moving,
-            "range_noise": RangeNoise(kind, self.range_noise, grazing=angle),
-            "odometry_noise": OdometryNoise(position=self.odometry_error),
+            "range_noise": RangeNoise(
+                "gaussian" if self.gaussian_noise else "uniform", self.range_noise, grazing=angle
+            ),
+            "odometry_noise": OdometryNoise(position=self.odometry_error, heading_per_metre=drift),
+            "sonar": SonarEffects(
+                firing=self._firing(),
+                crosstalk=Crosstalk(self.crosstalk) if self.crosstalk else None,
+                dropout=self.dropout,
+            ),
+            "infrared": InfraredEffects() if self.infrared_by_colour else None,
+            "bumper_noise": BumperNoise(hold=self.sticky_bumpers),
+            "gyroscope": Gyroscope() if self.gyroscope else None,
         }
+
+    def _firing(self) -> FiringOrder | None:
+        if self.sonar_per_step:
+            return FiringOrder(
+                self.sonar_per_step, "spread" if self.spread_firing else "sequential"
+            )
+        if self.spread_firing:
+            raise ConfigError("spread firing: needs --sonar-per-step, how many fire together")
+        return None
 
     def _goal_place(self) -> tuple[float, float] | None:
         """Return where `--goal` is [m], None for the room's own."""
