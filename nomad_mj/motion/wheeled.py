@@ -50,11 +50,14 @@ class WheeledDrive:
     axle: float = 0.0
     sees_behind: bool = False
 
-    @cached_property
+    @property
     def kind(self) -> str:
         """``"omni"`` if the robot can go sideways, else ``"differential"``."""
-        rank = np.linalg.matrix_rank(np.array(self.rows), tol=1e-3)
-        return "omni" if rank == 3 else "differential"
+        return "omni" if self._rank == 3 else "differential"
+
+    @cached_property
+    def _rank(self) -> int:
+        return int(np.linalg.matrix_rank(np.array(self.rows), tol=1e-3))
 
     @property
     def encoders(self) -> tuple[str, ...]:
