@@ -7,6 +7,7 @@ import numpy as np
 from typing_extensions import Self
 
 from nomad_mj.arenas.floor_plan import FloorPlan
+from nomad_mj.arenas.footprints import FARTHEST
 from nomad_mj.arenas.names import room_name
 from nomad_mj.errors import ModelError, StartError
 from nomad_mj.types import FloatArray
@@ -66,6 +67,11 @@ class Arena:
                 f"sites there are: {there}"
             )
         poses = np.array([_planar_pose(data, site) for site in starts.values()])
+        for site in ("goal", *starts):
+            if not (np.abs(data.site_xpos[sites[site]]) < FARTHEST).all():
+                raise ModelError(
+                    f"room {name!r}: site {site!r} is not within {FARTHEST:g} m of the origin"
+                )
         cameras = filter(None, (room_name(model.camera(i).name) for i in range(model.ncam)))
         return cls(
             name, _planar_pose(data, sites["goal"])[:2], poses, tuple(starts), tuple(cameras)

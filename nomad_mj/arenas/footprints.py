@@ -14,6 +14,9 @@ from nomad_mj.types import FloatArray
 FLOOR_HEIGHT = 0.01
 """Whatever ends below this height [m] is floor, not obstacle."""
 
+FARTHEST = 1e5
+"""What stands or reaches farther from the origin [m] is a mistake."""
+
 ROUND_TOLERANCE = 0.001
 """How far the polygon drawn around something round may stand off from it [m]."""
 
@@ -42,7 +45,7 @@ def footprints(
     Raises
     ------
     ModelError
-        For a height field, or a plane that is not level.
+        For a height field, a plane that is not level, or what is beyond all measure.
     """
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
@@ -56,6 +59,10 @@ def footprints(
             _check_level(data.geom_xmat[geom], name)
             continue
         points, spread = _points_and_spread(model, data, geom, name)
+        if not (np.abs(points).max() < FARTHEST and np.abs(spread).max() < FARTHEST):
+            raise ModelError(
+                f"{name!r} reaches farther than {FARTHEST:g} m from the origin; lengths are metres"
+            )
         reach = float(np.linalg.norm(spread[2]))
         bottom, top = points[:, 2].min() - reach, points[:, 2].max() + reach
         if bottom < robot_height and top > FLOOR_HEIGHT:
@@ -122,7 +129,8 @@ def _points_and_spread(
             f"{name!r} is a {kind.name.removeprefix('mjGEOM_').lower()}, which has no footprint; "
             "use boxes, cylinders, capsules, spheres, ellipsoids or meshes"
         )
-    return local @ rotation.T + data.geom_xpos[geom], rotation * spread
+    with np.errstate(invalid="ignore", over="ignore"):  # whoever needs it looks at what comes out
+        return local @ rotation.T + data.geom_xpos[geom], rotation * spread
 
 
 def _project(points: FloatArray, spread: FloatArray) -> BaseGeometry:

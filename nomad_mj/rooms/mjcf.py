@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Iterator
 
+from nomad_mj.rooms.cameras import room_cameras
 from nomad_mj.rooms.room import Cylinder, Polygon, Room, Shape
 
 _COLOURS = ("0.80 0.52 0.42 1", "0.56 0.66 0.54 1", "0.86 0.73 0.50 1", "0.47 0.57 0.67 1")
@@ -47,7 +48,7 @@ def to_mjcf(room: Room) -> str:
         colour = _COLOURS[number % len(_COLOURS)]
         what = f'name="obstacle_{number}" rgba="{colour}"'
         lines.append(_geom(shape, what, room.height, names))
-    lines += [*_sites(room), *_cameras(room.bounds), "  </worldbody>", "</mujoco>", ""]
+    lines += [*_sites(room), *_cameras(room), "  </worldbody>", "</mujoco>", ""]
     return "\n".join(lines)
 
 
@@ -90,12 +91,9 @@ def _sites(room: Room) -> Iterator[str]:
         yield f'    <site class="start" name="{name}" pos="{_text(x, y, 0)}"{_turn(heading)}/>'
 
 
-def _cameras(bounds: tuple[float, float, float, float]) -> Iterator[str]:
-    """Yield cameras that see the whole room in a picture of 4 : 3, from above and at an angle."""
-    x0, y0, x1, y1 = bounds
-    x, y = (x0 + x1) / 2, (y0 + y1) / 2
-    fit = max(y1 - y0, 0.75 * (x1 - x0))
-    top, high = _text(x, y, 1.2 * fit + 2), _text(x, y - 0.94 * fit, 1.06 * fit)
-    fovy = _text(1.07 * fit)
-    yield f'    <camera name="top" pos="{top}" projection="orthographic" fovy="{fovy}"/>'
-    yield f'    <camera name="overview" pos="{high}" xyaxes="1 0 0 0 0.775 0.632" fovy="43"/>'
+def _cameras(room: Room) -> Iterator[str]:
+    (top, side), (overview, angle) = room_cameras(room)
+    pose = f'pos="{_text(*top)}" projection="orthographic"'
+    yield f'    <camera name="top" {pose} fovy="{_text(side)}"/>'
+    pose = f'pos="{_text(*overview)}" xyaxes="1 0 0 0 0.775 0.632"'
+    yield f'    <camera name="overview" {pose} fovy="{_text(angle)}"/>'

@@ -11,7 +11,7 @@ from nomad_mj.errors import ModelError
 from nomad_mj.geometry import rotate
 from nomad_mj.rooms.islands import fit_islands
 from nomad_mj.rooms.rectangles import Mask, merge_cells
-from nomad_mj.rooms.room import Box, Cylinder, Polygon, Room, Shape
+from nomad_mj.rooms.room import LONGEST_SIDE, Box, Cylinder, Polygon, Room, Shape
 from nomad_mj.rooms.smooth import straighten, without_specks
 from nomad_mj.types import FloatArray
 
@@ -19,9 +19,6 @@ FREE, OCCUPIED, UNKNOWN = 0, 1, 2
 
 _FINE = 0.1
 """In maps with cells as small as this [m], gaps one cell wide are noise: they are filled."""
-
-LONGEST_SIDE = 1000.0
-"""What is larger [m] is taken for a mistake in the resolution."""
 
 
 @dataclass(frozen=True, eq=False)

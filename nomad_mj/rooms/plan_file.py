@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from nomad_mj.errors import ModelError
-from nomad_mj.rooms.room import HEIGHT, Box, Cylinder, Polygon, Room, Shape
+from nomad_mj.rooms.room import HEIGHT, LONGEST_SIDE, Box, Cylinder, Polygon, Room, Shape
 from nomad_mj.values import number, numbers, read_yaml, refuse_others
 
 WALL = 0.15
@@ -44,11 +44,13 @@ def read_plan(path: Path) -> Room:
         outline = ((0.0, 0.0), (x, 0.0), (x, y), (0.0, y))
     else:
         outline = _corners(held["outline"], f"{what}: outline")
+    x0, y0, x1, y1 = shapely.Polygon(outline).bounds
+    if max(x1 - x0, y1 - y0) > LONGEST_SIDE:
+        raise ModelError(f"{what}: larger than {LONGEST_SIDE:g} m; lengths are metres")
     obstacles = _list(held, "obstacles", what)
     shapes = tuple(_shape(each, f"{what}: obstacle {i}") for i, each in enumerate(obstacles, 1))
     goal = numbers(held["goal"], f"{what}: goal", 2) if "goal" in held else None
     starts = [numbers(each, f"{what}: start", 2, 3) for each in _list(held, "starts", what)]
-    x0, y0, x1, y1 = shapely.Polygon(outline).bounds
     return Room(
         path.stem,
         walls_along(outline),

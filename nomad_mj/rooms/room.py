@@ -6,6 +6,9 @@ from typing import TypeAlias
 HEIGHT = 0.9
 """How high walls and obstacles are unless a room says otherwise [m]; sonars look out at 0.7 m."""
 
+LONGEST_SIDE = 1000.0
+"""A room that is larger [m] is taken for a mistake in its unit."""
+
 
 @dataclass(frozen=True)
 class Box:
