@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 from nomad_mj.errors import ModelError
 
 _MOST_ELEMENTS = 200_000  # once everything is replicated
+_MOST_COPIES = 5_000  # the engine takes a time that grows with the square of them
 _MOST_CELLS = 100_000_000  # of a texture or a height field
 _LARGEST = 20_000_000  # bytes of a file
 _DEEPEST = 40  # includes within includes
@@ -17,6 +18,7 @@ _SIZES = {
     "composite": ("count",),
     "flexcomp": ("count",),
 }
+_MOST = {"composite": _MOST_COPIES, "flexcomp": _MOST_COPIES}
 
 
 def check_size(kind: str, path: Path) -> None:
@@ -46,12 +48,18 @@ def _count_file(path: Path, above: tuple[Path, ...]) -> float:
     if len(above) > _DEEPEST:
         raise ModelError("includes itself, or files more than forty deep")
     try:
+        if path.exists() and not path.is_file():  # the engine would wait for a pipe
+            raise ModelError(f"includes {str(path)!r}, which is no file")
         if path.stat().st_size > _LARGEST:
             raise ModelError(f"is larger than {_LARGEST // 1_000_000} MB; is it MJCF?")
-        root = ElementTree.parse(path).getroot()
-    except (OSError, ElementTree.ParseError, UnicodeDecodeError, ValueError, RecursionError):
+        text = path.read_bytes()
+        if text.lstrip().startswith(b"<"):
+            text.decode()  # the engine reads other text, but its names cannot be asked for
+        return _count(ElementTree.fromstring(text), path, above)
+    except UnicodeDecodeError:
+        raise ModelError("holds what is not UTF-8 text") from None
+    except (OSError, ElementTree.ParseError, ValueError, RecursionError):
         return 0.0
-    return _count(root, path, above)
 
 
 def _count(element: ElementTree.Element, path: Path, above: tuple[Path, ...]) -> float:
@@ -63,12 +71,16 @@ def _count(element: ElementTree.Element, path: Path, above: tuple[Path, ...]) ->
         for name in _SIZES.get(element.tag, ())
         for part in element.get(name, "1").split()
     )
-    if size > _MOST_CELLS:
-        raise ModelError(f"has a {element.tag} of {size:.3g} cells; at most {_MOST_CELLS:.0e}")
+    most = _MOST.get(element.tag, _MOST_CELLS)
+    if size > most:
+        raise ModelError(f"has a {element.tag} of {size:.3g} cells; at most {most}")
     inside = sum(_count(child, path, above) for child in element)
-    if element.tag == "replicate":
-        return _number(element.get("count", "1")) * inside
-    return 1.0 + inside
+    if element.tag != "replicate":
+        return 1.0 + inside
+    copies = _number(element.get("count", "1")) * inside
+    if copies > _MOST_COPIES:
+        raise ModelError(f"makes {copies:.3g} elements by replicate; at most {_MOST_COPIES}")
+    return copies
 
 
 def _number(text: str) -> float:

@@ -13,8 +13,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from nomad_agents.cli.main import main
 
-from nomad_mj.arenas import check_file
 from nomad_mj.errors import NomadError
+from nomad_mj.guard import check_size
 from nomad_mj.movers import Movers
 from nomad_mj.rooms import read_room
 from nomad_mj.scene import build_scene
@@ -49,7 +49,6 @@ def told(work: Callable[[], object], folder: Path) -> str:
 
 
 def load(path: Path) -> None:
-    check_file("room", path)
     scene = build_scene(path, "nomad200")
     if scene.moving:
         Movers(scene.moving, scene.plan, scene.arena.goal, scene.robot.layout.radius)
@@ -61,9 +60,9 @@ def inside(text: str) -> str:
 
 MJCF: list[tuple[str | bytes, str]] = [
     ("", "empty file"),
-    (b"\xff\xfe\x00\x01" * 50, "is not UTF-8 text"),
-    (GOOD.encode("utf-16"), "is not UTF-8 text"),
-    (GOOD.replace("wall_north", "w\xe4nd").encode("latin-1"), "is not UTF-8 text"),
+    (b"\xff\xfe\x00\x01" * 50, "is not valid MJCF"),
+    (GOOD.encode("utf-16"), "is not valid MJCF"),
+    (GOOD.replace("wall_north", "w\xe4nd").encode("latin-1"), "not UTF-8 text"),
     (b"\0" * 9, "is not valid MJCF"),
     ("<html/>", "is not valid MJCF"),
     (GOOD[:300], "is not valid MJCF"),
@@ -84,33 +83,35 @@ MJCF: list[tuple[str | bytes, str]] = [
     (GOOD.replace("3 1 0.45", "-30 1 0.45"), "is outside the room"),
     (GOOD.replace('user="0.5', 'user="inf'), "a walker's must be its speed"),
     (GOOD.replace('mocap="true"', ""), "'moving_a' cannot move"),
-    (inside('<include file="room.xml"/>'), "already included"),
-    (inside('<include file="other.xml"/>'), "already included"),
+    (inside('<include file="room.xml"/>'), "includes itself"),
+    (inside('<include file="other.xml"/>'), "includes itself"),
     (inside('<include file="../../../../../../../../etc/passwd"/>'), "is not valid MJCF"),
     (inside('<include file="/etc/passwd"/>'), "is not valid MJCF"),
-    (inside('<include file="none.xml"/>'), "where there is no file"),
-    (inside('<include file="."/>'), "where there is no file"),
-    (inside('<include file="/dev/zero"/>'), "where there is no file"),
-    (inside('<include file="pipe"/>'), "where there is no file"),
+    (inside('<include file="none.xml"/>'), "is not valid MJCF"),
+    (inside('<include file="."/>'), "which is no file"),
+    (inside('<include file="/dev/zero"/>'), "which is no file"),
+    (inside('<include file="pipe"/>'), "which is no file"),
     (inside('<asset><mesh file="/etc/passwd"/></asset>'), "no decoder found"),
     (
         inside('<asset><hfield name="h" nrow="20000" ncol="20000" size="1 1 1 1"/></asset>'),
-        "points",
+        "cells",
     ),
-    (inside('<asset><texture builtin="flat" width="90000" height="90000"/></asset>'), "points"),
+    (inside('<asset><texture builtin="flat" width="90000" height="90000"/></asset>'), "cells"),
     (inside('<extension><plugin plugin="none.none"/></extension>'), "is not valid MJCF"),
     (inside('<option timestep="nan"/>'), "holds a NaN"),
     (GOOD.replace("</worldbody>", "<body>" * 3000 + "</body>" * 3000 + "</worldbody>"), "too deep"),
     (
-        GOOD.replace("</worldbody>", '<replicate count="99999"><geom/></replicate></worldbody>'),
-        "<replicate> makes 99999 copies",
+        GOOD.replace(
+            "</worldbody>", '<replicate count="99999"><geom/><site/></replicate></worldbody>'
+        ),
+        "makes 2e+05 elements by replicate",
     ),
     (
         GOOD.replace(
             "</worldbody>",
             '<composite type="grid" count="999 999 1" spacing="1"><geom/></composite></worldbody>',
         ),
-        "<composite> makes 998001 copies",
+        "has a composite of 9.98e+05 cells; at most 5000",
     ),
 ]
 
@@ -146,7 +147,7 @@ def test_bytes_that_have_changed(data: st.DataObject, tmp_path: Path) -> None:
             text[at:at] = text[at : at + data.draw(st.integers(1, 60))]
     path = tmp_path / "room.xml"
     path.write_bytes(text)
-    told(lambda: check_file("room", path), tmp_path)
+    told(lambda: check_size("room", path), tmp_path)
 
 
 NUMBERS = [None, True, -1, 0, 1e-9, 1e300, -math.inf, math.nan, 10**400]
