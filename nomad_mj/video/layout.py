@@ -110,6 +110,28 @@ def make_layout(view: str, size: Size | None = None) -> Layout:
     return _beside(view, width, height)
 
 
+def bare_layout(view: str, size: Size) -> Layout:
+    """Return the layout of a picture that one view fills, with nothing beside it.
+
+    Parameters
+    ----------
+    view : str
+        One of `VIEWS` but "side".
+    size : (int, int)
+        Width and height of the picture [px].
+
+    Raises
+    ------
+    UnknownNameError, ConfigError
+        As of `make_layout`.
+    """
+    alone = [name for name in VIEWS if name != "side"]
+    if view not in alone:
+        raise UnknownNameError("view", view, alone)
+    width, height = check_size(size)
+    return _overlaid((width, height), (Pane(view, Box(0, 0, width, height)),), width)
+
+
 def _fit(box: Box, camera: str) -> Box:
     """Return the box, lower if it is so narrow that its sides would cut off the room."""
     height = min(box.height, round(box.width / _ASPECTS[camera]))

@@ -17,8 +17,9 @@ from nomad_mj.video.canvas import Canvas, Image
 from nomad_mj.video.caption import Caption, CaptionBar
 from nomad_mj.video.cards import Card
 from nomad_mj.video.inset import inset_card
-from nomad_mj.video.layout import Size, make_layout
+from nomad_mj.video.layout import Layout, Size, make_layout
 from nomad_mj.video.painter import Painter
+from nomad_mj.video.palette import RGB
 from nomad_mj.video.trail import Trail
 
 _AIMLESS = 0.1  # [m]
@@ -31,8 +32,8 @@ class Studio:
     ----------
     scene : Scene
         Robot and room.
-    view : str
-        One of `layout.VIEWS`.
+    view : str or Layout
+        One of `layout.VIEWS`, or where everything lies.
     size : (int, int), optional
         Width and height of the frames [px], even; that of the view if None.
     speed : float
@@ -56,9 +57,13 @@ class Studio:
     """
 
     def __init__(
-        self, scene: Scene, view: str = "chase", size: Size | None = None, speed: float = 1.0
+        self,
+        scene: Scene,
+        view: str | Layout = "chase",
+        size: Size | None = None,
+        speed: float = 1.0,
     ) -> None:
-        self.layout = make_layout(view, size)
+        self.layout = make_layout(view, size) if isinstance(view, str) else view
         self._scene = scene
         self._canvas = Canvas(scene.model, self.layout)
         self.data = mujoco.MjData(scene.model)
@@ -128,6 +133,12 @@ class Studio:
             self._drive = 0.5 * self._drive + move
             if np.hypot(*self._drive) > _AIMLESS:
                 self.look_along(float(direction(self._drive)))
+        self.show_grid(grid, move, cell, colour)
+
+    def show_grid(
+        self, grid: FloatArray | None, move: FloatArray | None, cell: float, colour: RGB
+    ) -> None:
+        """Show a certainty grid in the inset, None for no inset, with a move of that colour."""
         self._inset = None
         if grid is not None:
             self._inset = inset_card(

@@ -20,12 +20,14 @@ from nomad_agents.cli.listing import List
 from nomad_agents.cli.main import main
 from nomad_agents.cli.record import Record
 from nomad_agents.cli.train import Train
+from nomad_agents.cli.view import View
 
 GOLDEN = str(Path(__file__).parent / "data" / "checkpoint_v1.npz")
 COMMANDS: dict[str, type[Any]] = {
     "train": Train,
     "evaluate": Evaluate,
     "record": Record,
+    "view": View,
     "list": List,
     "bench": Bench,
     "demo": Demo,

@@ -16,12 +16,14 @@ from nomad_agents.cli.record import Record
 from nomad_agents.cli.reproduce import Reproduce
 from nomad_agents.cli.room import MakeRoom
 from nomad_agents.cli.train import Train
+from nomad_agents.cli.view import View
 from nomad_mj.errors import NomadError
 
 COMMANDS: dict[str, type[Any]] = {
     "train": Train,
     "evaluate": Evaluate,
     "record": Record,
+    "view": View,
     "reproduce": Reproduce,
     "room": MakeRoom,
     "check": Check,
