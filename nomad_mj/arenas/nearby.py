@@ -31,6 +31,8 @@ class Nearby:
 
     Attributes
     ----------
+    useful : bool
+        Whether there is enough to hide.
     hidden : ndarray of int, shape (H,)
         The geoms that are hidden now.
     """
@@ -42,28 +44,34 @@ class Nearby:
         self._middle, self._half = _boxes(model, self._standing)
         self._alpha = model.geom_rgba[:, 3].copy()
         self._material = model.geom_matid.copy()
-        self._useful = np.isfinite(reach) and len(self._standing) > FEWEST
+        self.useful = np.isfinite(reach) and len(self._standing) > FEWEST
         self._last = (np.inf, np.inf)
         self.hidden = np.zeros(0, dtype=np.intp)
+
+    @staticmethod
+    def may_help(model: mujoco.MjModel) -> bool:
+        """Return whether there may be enough to hide in a model."""
+        return int(model.ngeom) > FEWEST
 
     def update(self, x: float, y: float) -> None:
         """See to it that all is visible that the rays of a robot at x, y [m] can meet."""
         last_x, last_y = self._last
-        if not self._useful or abs(x - last_x) + abs(y - last_y) < SLACK:
+        if not self.useful or abs(x - last_x) + abs(y - last_y) < SLACK:
             return
-        self._last = x, y
         gap = np.maximum(np.abs(self._middle - (x, y)) - self._half, 0.0)
         far = gap[:, 0] ** 2 + gap[:, 1] ** 2 > self._reach**2
         self.show_all()
+        self._last = x, y
         self.hidden = self._standing[far]
         self._model.geom_rgba[self.hidden, 3] = 0.0
         self._model.geom_matid[self.hidden] = -1  # or the material's colour would count
 
     def show_all(self) -> None:
-        """Let all be visible again, for a picture; the next `update` that is due hides."""
+        """Let all be visible again, for a picture; the next `update` hides."""
         self._model.geom_rgba[self.hidden, 3] = self._alpha[self.hidden]
         self._model.geom_matid[self.hidden] = self._material[self.hidden]
         self.hidden = self.hidden[:0]
+        self._last = (np.inf, np.inf)
 
 
 def _stands(model: mujoco.MjModel) -> np.ndarray:

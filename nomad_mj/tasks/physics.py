@@ -1,5 +1,6 @@
 """The simulated robot, asked in its own terms: readings, encoders, pose."""
 
+import copy
 import math
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 from dm_control.mujoco import Physics, wrapper
 from dm_control.rl.control import PhysicsError
 
+from nomad_mj.arenas import Nearby
 from nomad_mj.motion import SynchroDrive
 from nomad_mj.robots import PREFIX, RobotDescription
 from nomad_mj.scene import Scene
@@ -36,7 +38,10 @@ class NavigationPhysics(Physics):
             The robot lacks a ring of `infrared`.
         """
         light = Infrared(infrared, scene.model, scene.robot) if infrared is not None else None
-        physics = cls.from_model(wrapper.MjModel(scene.model))
+        model = scene.model  # pictures go on drawing it while this hides what is far
+        if Nearby.may_help(model):
+            model = copy.copy(model)
+        physics = cls.from_model(wrapper.MjModel(model))
         physics.robot, physics.grazing, physics.infrared = scene.robot, grazing, light
         physics._bind()
         return physics
@@ -48,12 +53,14 @@ class NavigationPhysics(Physics):
 
     def copy(self, share_model: bool = False) -> "NavigationPhysics":
         """Return an independent copy of this simulation in its present state."""
+        self._near.show_all()
         other: NavigationPhysics = super().copy(share_model)
         other.robot, other.grazing, other.infrared = self.robot, self.grazing, self.infrared
         other._bind()
         return other
 
     def __getstate__(self) -> Any:
+        self._near.show_all()
         return super().__getstate__(), self.robot, self.grazing, self.infrared
 
     def __setstate__(self, state: Any) -> None:
@@ -76,6 +83,10 @@ class NavigationPhysics(Physics):
     def _bind(self) -> None:
         """Look names up once: the control step reads plain arrays."""
         model, data = self.model.ptr, self.data.ptr
+        if hasattr(self, "_near"):
+            self._near.show_all()
+        farthest = float(self.robot.rays.maximum.max())
+        self._near = Nearby(model, self.robot.layout.radius + farthest + 0.01)
         self._raw = (model, data)
         self._sensordata: FloatArray = data.sensordata
         self._history: FloatArray = data.history
@@ -121,6 +132,8 @@ class NavigationPhysics(Physics):
     def step(self, nstep: int = 1) -> None:
         """Advance by `nstep` physics steps; raise PhysicsError if the simulation diverges."""
         model, data = self._raw
+        if self._near.useful:
+            self._near.update(*self.pose()[:2])
         mujoco.mj_step2(model, data)
         if nstep > 1:
             mujoco.mj_step(model, data, nstep - 1)
@@ -140,6 +153,11 @@ class NavigationPhysics(Physics):
         self.data.qpos[self._wheels] = pose.heading  # else their belts would wrench them there
         if self._servo >= 0:  # else the servo would turn the wheels back to zero
             self.data.act[self._servo] = pose.heading
+
+    def render(self, *args: Any, **kwargs: Any) -> Any:
+        """Draw all there is, however far; arguments as of dm_control's."""
+        self._near.show_all()
+        return super().render(*args, **kwargs)
 
     def move_bodies(self, rows: IntArray, places: FloatArray) -> None:
         """Put mocap bodies, given their rows (n,), at places (n, 2) [m]; the next step sees it."""

@@ -92,7 +92,7 @@ def test_help_lists_the_commands(run: Run) -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        ("nothing", "unknown command 'nothing'; there are: bench, demo, evaluate, "),
+        ("nothing", "unknown command 'nothing'; there are: bench, check, demo, evaluate"),
         ("", "the command must come first, one of: train, evaluate, "),
         ("--json train", "the command must come first, one of: train, "),
         ("train --no-such-option", "train: unknown option '--no-such-option'; there are: --room "),
@@ -189,7 +189,7 @@ def test_list_names_everything(run: Run) -> None:
     ("arguments", "told"),
     [
         (["train", "--room", "attic"], "unknown room 'attic'; there are: clutter, concave_room"),
-        (["evaluate", "--robot", "r2d2"], "unknown robot 'r2d2'; there are: nomad200, nomad"),
+        (["evaluate", "--robot", "r2d2"], "unknown robot 'r2d2'; there are: khepera, nomad"),
         (["train", "--agent", "x"], "unknown agent 'x'; there are: CHECKPOINT.npz, planner"),
         (["evaluate", "--agent", "x"], "unknown agent 'x'; there are: CHECKPOINT.npz, planner"),
         (["record", "--agent", "no.npz"], "checkpoint 'no.npz' does not exist"),

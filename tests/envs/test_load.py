@@ -109,7 +109,7 @@ REFUSED: list[tuple[dict[str, Any], type[NomadError], str]] = [
         "environment option 'flat_observation': must be True or False, not 'no'",
     ),
     ({"room": "nowhere"}, UnknownNameError, "unknown room 'nowhere'; there are: clutter, "),
-    ({"robot": "r2d2"}, UnknownNameError, "unknown robot 'r2d2'; there are: nomad200, "),
+    ({"robot": "r2d2"}, UnknownNameError, "unknown robot 'r2d2'; there are: khepera, "),
 ]
 
 
