@@ -141,7 +141,7 @@ def _car(named: NamedModel, actuators: dict[str, int]) -> Driven:
     fastest = named.number(
         "translate_max_speed",
         min(
-            top_speed(named, name, actuator) / gain
+            top_speed(named, name, actuator) / abs(gain)
             for name, actuator, gain in zip(groups[0], driven, gains, strict=True)
         ),
     )

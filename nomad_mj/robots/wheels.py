@@ -77,6 +77,8 @@ class Wheel:
             direction = data.site_xmat[site].reshape(3, 3) @ gear[:3]
             self.place = data.site_xpos[site].copy()
             self.gain = 1.0
+        if not self.gain:
+            raise named.error(f": actuator {name!r} has no gear, so it moves nothing")
         self.place = ((self.place - data.xpos[base]) @ frame)[:2]
         rolls = (direction @ frame)[:2]
         length = float(np.hypot(*rolls))
@@ -162,9 +164,8 @@ def wheeled_drive(
     track = named.find_number("track")
     if track is not None:  # as odometry is calibrated: the distance of tyres that turns tell
         rows[:, 2] *= track / max(float(np.ptp(rows[:, 2] / rows[:, 0])), 1e-9)
-    fastest = [
-        top_speed(named, n, actuators[n]) / w.gain for n, w in zip(names, wheels, strict=True)
-    ]
+    tops = [top_speed(named, name, actuators[name]) for name in names]
+    fastest = [top / abs(wheel.gain) for top, wheel in zip(tops, wheels, strict=True)]
     rank = int(np.linalg.matrix_rank(rows, tol=1e-3))
     if kind and (rank == 3) != (kind == "omni"):
         raise named.error(f": it is said to be {kind}, but its wheels are not")

@@ -113,6 +113,15 @@ def test_numbers_of_the_data_sheet_go_before_those_of_the_file(cart: Cart) -> No
     assert robot.limits.translate == pytest.approx(0.9)
 
 
+def test_a_motor_that_is_mounted_the_other_way_round_drives_alike(cart: Cart) -> None:
+    right = 'name="motor_r" joint="wheel_r"'
+    turned = cart((right, f'{right} gear="-1"'))
+    robot = build_scene("empty_room", turned).robot
+    assert robot.limits.translate == pytest.approx(15 * 0.05)
+    straight, *_ = drive_patterns(turned)
+    assert straight.finished and straight.off_odometry < 0.01
+
+
 WRONG = {
     "no ring": ("base: base_link", "has no range sensor"),
     "no such motor": (
@@ -148,6 +157,7 @@ def test_mistakes_in_a_data_sheet_are_one_line(cart: Cart, sheet: str, told: str
 
 FILES = {
     "torque": (("velocity", "motor"), ('kv="1"', ""), "takes no speed; write it as <velocity"),
+    "no gear": (('kv="1"', 'kv="1" gear="0"'), ("", ""), "has no gear, so it moves nothing"),
     "no range": ((' ctrlrange="-15 15"', ""), ("", ""), "needs a ctrlrange"),
     "fixed": (
         ('<freejoint name="root"/>', ""),
