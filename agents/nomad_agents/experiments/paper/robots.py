@@ -25,7 +25,7 @@ from nomad_agents.registry import find_config
 from nomad_agents.training import TrainingConfig
 
 ROBOTS = ("nomad200", "pioneer", "khepera", "omnibot", "racer")
-ROOMS = ("paper_room", "clutter", "moving_room", "hall")
+ROOMS = ("empty_room", "paper_room", "clutter", "hall")
 _MOST_PASSES = 8
 _SHOWN = 8
 CASES = {f"{robot}, {room}": (robot, room) for robot in ROBOTS for room in ROOMS}
