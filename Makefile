@@ -3,7 +3,7 @@
 
 bin := .venv/bin
 
-.PHONY: help setup demo test bench lint clean
+.PHONY: help setup extras demo test bench lint clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -12,16 +12,19 @@ help: ## list the targets
 setup: ## make .venv, install the package and, where allowed, OpenGL
 	@scripts/setup.sh $(if $(filter setup,$(MAKECMDGOALS)),--apt)
 
+extras: ## add what deep learners, sweeps and datasets need (PyTorch, Ray, Minari)
+	@scripts/setup.sh --extras
+
 demo: setup ## learn the paper's room, then print the table and draw the figures
 	@$(bin)/nomad-mj demo $(ARGS)
 
-test: setup ## run the tests (ARGS="tests/test_gl.py -k egl" for some of them)
+test: extras ## run the tests (ARGS="tests/test_gl.py -k egl" for some of them)
 	@$(bin)/python -m pytest -n auto --maxprocesses 4 $(ARGS)
 
-bench: setup ## measure the speed, as ratios to bare MuJoCo
+bench: extras ## measure the speed, as ratios to bare MuJoCo
 	@$(bin)/nomad-mj bench $(ARGS)
 
-lint: setup ## check style and types
+lint: extras ## check style and types
 	$(bin)/python -m ruff check .
 	$(bin)/python -m ruff format --check .
 	$(bin)/python -m pyright --pythonpath $(bin)/python

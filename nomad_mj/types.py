@@ -1,5 +1,6 @@
 """Plain data shared by the simulation and the agents: no physics, no behaviour."""
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
@@ -60,6 +61,22 @@ class SensorLayout:
     def count(self) -> int:
         """Number of range sensors in all rings together."""
         return sum(len(ring.bearings) for ring in self.rings)
+
+    def matches(self, other: "SensorLayout") -> bool:
+        """Return whether both are the same sensors, but for rounding.
+
+        Numbers that come out of the engine differ in their last bits from processor to processor.
+        """
+        if [(r.name, len(r.bearings)) for r in self.rings] != [
+            (r.name, len(r.bearings)) for r in other.rings
+        ]:
+            return False
+        mine, theirs = self._numbers(), other._numbers()
+        return all(math.isclose(a, b, abs_tol=1e-9) for a, b in zip(mine, theirs, strict=True))
+
+    def _numbers(self) -> list[float]:
+        rings = [(*r.bearings, r.half_angle, r.min_range, r.max_range) for r in self.rings]
+        return [self.radius, *(number for ring in rings for number in ring)]
 
 
 @dataclass(frozen=True)

@@ -1,15 +1,18 @@
 #!/usr/bin/env bash
 # Makes .venv, installs the package into it, and OpenGL where that is allowed. Quick when all is
 # there. An interrupted, moved or broken .venv is made anew; one that somebody else made is used.
-#   PYTHON=...  the interpreter to use      --apt  try apt for OpenGL again
+#   PYTHON=...  the interpreter to use      --apt     try apt for OpenGL again
+#                                           --extras  install the optional packages too
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 venv=.venv
 ours=$venv/.made-by-setup # there before anything else: this .venv may be removed
 ready=$venv/.ready        # there after everything else; holds the folder .venv was made in
+extras=$venv/.extras      # there once the optional packages are
 gl=$venv/.gl              # there once apt was tried; holds "works" where OpenGL does
 # libegl1 alone lacks a driver, and the library PyOpenGL asks for errors.
+torch=2.13.0
 gl_packages=(libegl1 libopengl0 libgl1-mesa-dri libosmesa6)
 export PIP_USER=0 PIP_DISABLE_PIP_VERSION_CHECK=1
 
@@ -134,6 +137,21 @@ set_up() {
   install_package
 }
 
+# The CPU build of PyTorch is a tenth of the usual one. Its own index has it; where that cannot be
+# reached, whatever pip finds will do.
+install_extras() {
+  if [ "$extras" -nt pyproject.toml ]; then return; fi
+  say "installing the optional packages: PyTorch, Stable-Baselines3, Ray, Minari, TensorBoard"
+  if ! has "$venv/bin/python" torch; then
+    "$venv/bin/python" -m pip install --quiet --retries 0 --timeout 15 \
+      --index-url https://download.pytorch.org/whl/cpu "torch==$torch" >/dev/null 2>&1 ||
+      "$venv/bin/python" -m pip install --quiet "torch==$torch" || true
+  fi
+  "$venv/bin/python" -m pip install --quiet --editable '.[dev,all]' ||
+    die "pip could not install the optional packages (see above); type the same make again"
+  : >"$extras"
+}
+
 # --- OpenGL -------------------------------------------------------------------------------------
 gl_works() {
   "$venv/bin/python" -c 'import runpy, sys
@@ -169,4 +187,5 @@ say_gl() {
 # Two makes at once take turns.
 exec 9<. && { flock 9 2>/dev/null || true; }
 set_up
+if [ "${1:-}" = --extras ]; then install_extras; fi
 set_up_gl "$@"

@@ -20,7 +20,8 @@ FLOORS = (
     ("scene",),
     ("tasks",),
     ("envs",),
-    ("video",),
+    ("video", "batch"),
+    ("gym",),
 )
 FLOOR = {part: floor for floor, parts in enumerate(FLOORS) for part in parts}
 PURE = {part for parts in FLOORS[:3] for part in parts if not part.startswith("_")}

@@ -57,8 +57,14 @@ class Agent(ABC):
         self.layout = layout
         self.situation = situation
 
-    def start_episode(self) -> None:
-        """Forget the path of the episode before; nothing that was learnt is lost."""
+    def start_episode(self, chance: np.random.Generator | None = None) -> None:
+        """Forget the path of the episode before; nothing that was learnt is lost.
+
+        Parameters
+        ----------
+        chance : numpy.random.Generator, optional
+            The episode's own stream, for an agent that acts by chance even when it does not learn.
+        """
 
     @abstractmethod
     def act(self, percept: Percept, explore: np.random.Generator | None) -> Decision:

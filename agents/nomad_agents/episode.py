@@ -94,7 +94,7 @@ def run_episode(
         Called with each decision before the move (`after` None) and after it.
     """
     step = env.reset(seed, start)
-    agent.start_episode()
+    agent.start_episode(env.motor.task.random)
     percept = percept_of(step.observation, agent.layout, agent.situation)
     tally = _Tally(float(step.observation["clearance"]))
     while not step.last() and tally.decisions < max_decisions:

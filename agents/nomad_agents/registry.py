@@ -49,7 +49,7 @@ def find_agent(name_or_path: str, layout: SensorLayout, config: ReactivePlannerC
     if path.suffix != ".npz" and not exists:
         raise UnknownNameError("agent", name_or_path, [*AGENTS, "CHECKPOINT.npz"])
     checkpoint = load_checkpoint(path)
-    if checkpoint.layout != layout:
+    if not checkpoint.layout.matches(layout):
         raise CheckpointError(
             f"checkpoint {name_or_path!r} is for other sensors: "
             f"{describe_layout(checkpoint.layout)}; this robot has {describe_layout(layout)}"

@@ -55,11 +55,17 @@ class Percept(NamedTuple):
         The certainty grid; rows along y, oriented as the world.
     goal : array (..., 2)
         Shortest path vector: from the robot to the goal in the world's orientation [m].
+    ranges : array (..., C)
+        The readings it was made from, all rings concatenated [m].
+    sensors : array (...)
+        Direction of the sensors' frame [rad].
     """
 
     situation: FloatArray
     grid: FloatArray
     goal: FloatArray
+    ranges: FloatArray = np.zeros(0)
+    sensors: FloatArray | float = 0.0
 
 
 def attraction_force(goal: FloatArray, spec: SituationSpec) -> FloatArray:
@@ -96,4 +102,5 @@ def perceive(
     """
     grid = certainty_grid(ranges, heading, layout, spec.grid)
     coarse = code_grid(grid).reshape(*grid.shape[:-2], -1)
-    return Percept(np.concatenate([attraction_force(goal, spec), coarse], axis=-1), grid, goal)
+    situation = np.concatenate([attraction_force(goal, spec), coarse], axis=-1)
+    return Percept(situation, grid, goal, ranges, heading)

@@ -77,10 +77,11 @@ class Train(TaskOptions):
         checkpoint = load_checkpoint(path)
         robot = env.scene.robot
         wanted = (env.scene.arena.name, robot.name, robot.layout, self.seed, config)
+        layout = checkpoint.layout
         found = (
             checkpoint.room,
             checkpoint.robot,
-            checkpoint.layout,
+            robot.layout if layout.matches(robot.layout) else layout,
             checkpoint.training.get("seed"),
             checkpoint.agent.config,
         )

@@ -56,7 +56,7 @@ def action_map(env: PathFinding, agent: Agent, places: FloatArray, seed: int) ->
     for number, place in enumerate(places):
         step = env.reset(stream(seed, _ACTIONS, number), tuple(place.tolist()))
         percept = percept_of(step.observation, agent.layout, agent.situation)
-        agent.start_episode()
+        agent.start_episode(env.motor.task.random)
         decision = agent.act(percept, None)
         move = displacement(decision.action, percept.goal, env.config.action)
         actions.append(

@@ -54,7 +54,7 @@ class ReactivePlanner(Agent):
         self.plannings = 0
         self._path: list[_Step] = []
 
-    def start_episode(self) -> None:
+    def start_episode(self, chance: np.random.Generator | None = None) -> None:
         """Forget the path of the episode before."""
         self._path.clear()
 

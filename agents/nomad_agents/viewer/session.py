@@ -141,7 +141,7 @@ class Session:
         self._seed = None
         self._hand.halt()
         if self.agent is not None:
-            self.agent.start_episode()
+            self.agent.start_episode(self.env.motor.task.random)
         self.move, self.news = None, ""
         self.episodes += 1
         self.on_step()
