@@ -6,22 +6,25 @@ Y. Koren, "The vector field histogram", IEEE Transactions on Robotics and Automa
 
 What is adapted, and why:
 
-- The authors add up readings in their grid as the robot drives. Here the grid is that of one round of
-  readings, which all sensors of the ring give at once.
-- The third histogram masks directions that a robot cannot turn to because something lies in its curve.
-  Our robot turns on the spot before it drives, its curve has radius 0, and the masked histogram
-  is the binary one.
+- The authors add up readings in their grid as the robot drives. Here the grid is that of one round
+  of readings, which all sensors of the ring give at once.
+- The third histogram masks directions that a robot cannot turn to because something lies in its
+  curve. Our robot turns on the spot before it drives, its curve has radius 0, and the masked
+  histogram is the binary one.
 - The cost counts the turn from the present direction and that from the direction chosen last. The
   wheels of a robot that stands still face where it drove last: the two are the same, and
   their weights add up.
 - The authors set a speed by the density ahead; here it is the length of a move, which ends before
   what the grid shows in its way.
-- What is farther than the goal is left out of the histogram, or a goal before a wall is never reached.
+- What is farther than the goal is left out of the histogram, or a goal before a wall is never
+  reached.
 """
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from nomad_agents.agent import Agent, Decision
 from nomad_agents.baselines.way import (
@@ -37,6 +40,8 @@ from nomad_agents.reactive_planner.config import ReactivePlannerConfig
 from nomad_mj.geometry import direction, wrap_angle
 from nomad_mj.perception import GridSpec, Percept
 from nomad_mj.types import FloatArray, SensorLayout
+
+_Sectors: TypeAlias = npt.NDArray[np.bool_]
 
 _NEAR = 1e-6  # [m] from the goal: there is no direction to it
 _BLOCKED = 0.02  # [m] a direction is no way out that leads no farther
@@ -59,7 +64,7 @@ class VfhConfig:
     wide : float
         s_max: in an opening wider than this [rad] the robot keeps half of it from either border.
     goal, current, previous : float
-        Weights mu_1, mu_2 and mu_3 of the turns from the goal's, the present and the last direction.
+        Weights mu_1, mu_2 and mu_3 of the turns from the goal's, the present and the last way.
     safety : float
         Distance to keep from the centres of occupied cells, beside the robot's radius [m].
     occupied : float
@@ -70,7 +75,7 @@ class VfhConfig:
     window: float = 1.65
     low: float = 0.2
     high: float = 0.4
-    wide: float = np.deg2rad(80)
+    wide: float = np.deg2rad(40)
     goal: float = 5.0
     current: float = 2.0
     previous: float = 2.0
@@ -113,7 +118,7 @@ class VectorFieldHistogram(Agent):
         self.start_episode()
 
     def _tables(self, grid: GridSpec) -> tuple[FloatArray, FloatArray]:
-        """Return each cell's distance (cells**2,) [m] and weight in each sector (sectors, cells**2).
+        """Return the cells' distances (cells**2,) [m] and weights (sectors, cells**2).
 
         A cell counts in all sectors in which the robot, grown by the safety distance, would touch
         it: this is the enlargement of VFH+.
@@ -147,9 +152,9 @@ class VectorFieldHistogram(Agent):
         if len(headings):
             best = int(np.argmin(self._cost(headings, goal)))
         else:  # shut in: the emptiest sector of those that lead anywhere
-            headings = np.arange(config.sectors) * self._width
+            headings = np.arange(config.sectors, dtype=np.float64) * self._width
             free = free_way(headings, cells, self._reach)
-            best = int(np.argmin(np.where(free > min(_BLOCKED, free.max()), density, np.inf)))
+            best = int(np.argmin(np.where(free >= min(_BLOCKED, free.max()), density, np.inf)))
         self._last = float(headings[best])
         length = min(max(float(free[best]), _BLOCKED), longest)
         return Decision(action_towards(self._last, length, goal, self.action), "reacted")
@@ -160,7 +165,7 @@ class VectorFieldHistogram(Agent):
         near = self._distance <= np.hypot(percept.goal[0], percept.goal[1]) + self._reach
         return self._spread @ np.where(near & (certainty > self.config.occupied), certainty**2, 0.0)
 
-    def _candidates(self, free: FloatArray, goal: float) -> FloatArray:
+    def _candidates(self, free: _Sectors, goal: float) -> FloatArray:
         """Return the directions to choose from (n,) [rad]: of each opening, one, two or three."""
         if free.all():
             return np.array([goal])
