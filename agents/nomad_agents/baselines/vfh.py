@@ -127,7 +127,8 @@ class VectorFieldHistogram(Agent):
         distance = np.hypot(cells[:, 0], cells[:, 1])
         half = np.arcsin(np.minimum(self._reach / np.maximum(distance, self._reach), 1.0))
         middle = np.arange(config.sectors)[:, None] * self._width
-        covers = np.abs(wrap_angle(middle - direction(cells))) <= half
+        # A hair more, so that rounding does not tell left from right at a right angle.
+        covers = np.abs(wrap_angle(middle - direction(cells))) <= half + 1e-9
         weight = np.maximum(1 - (distance / config.window) ** 2, 0.0)
         return distance, covers * weight
 
@@ -151,10 +152,11 @@ class VectorFieldHistogram(Agent):
         headings, free = headings[free > _BLOCKED], free[free > _BLOCKED]
         if len(headings):
             best = int(np.argmin(self._cost(headings, goal)))
-        else:  # shut in: the emptiest sector of those that lead anywhere
+        else:  # shut in: the emptiest of the sectors that lead anywhere, of these the freest
             headings = np.arange(config.sectors, dtype=np.float64) * self._width
             free = free_way(headings, cells, self._reach)
-            best = int(np.argmin(np.where(free >= min(_BLOCKED, free.max()), density, np.inf)))
+            density = np.where(free >= min(_BLOCKED, free.max()), density, np.inf)
+            best = int(np.argmax(np.where(density <= density.min() + 1e-9, free, -np.inf)))
         self._last = float(headings[best])
         length = min(max(float(free[best]), _BLOCKED), longest)
         return Decision(action_towards(self._last, length, goal, self.action), "reacted")
