@@ -188,7 +188,7 @@ def test_random_moves_follow_the_stream_and_fill_the_square() -> None:
     for _ in range(2):
         agent.start_episode(np.random.default_rng(7))
         drawn.append(np.array([agent.act(world(0), None).action for _ in range(4000)]))
-    assert np.array_equal(*drawn)
+    assert np.array_equal(drawn[0], drawn[1])
     assert drawn[0].mean(axis=0) == pytest.approx(0.0, abs=0.05)
     assert drawn[0].std(axis=0) == pytest.approx(3**-0.5, abs=0.02)
     assert not np.array_equal(drawn[0][:1], [agent.act(world(0), None).action])

@@ -124,13 +124,13 @@ class VectorFieldHistogram(Agent):
         it: this is the enlargement of VFH+.
         """
         config, cells = self.config, centres(grid)
-        distance = np.hypot(cells[:, 0], cells[:, 1])
+        distance: FloatArray = np.hypot(cells[:, 0], cells[:, 1])
         half = np.arcsin(np.minimum(self._reach / np.maximum(distance, self._reach), 1.0))
         middle = np.arange(config.sectors)[:, None] * self._width
         # A hair more, so that rounding does not tell left from right at a right angle.
         covers = np.abs(wrap_angle(middle - direction(cells))) <= half + 1e-9
         weight = np.maximum(1 - (distance / config.window) ** 2, 0.0)
-        return distance, covers * weight
+        return distance, np.where(covers, weight, 0.0)
 
     def start_episode(self, chance: np.random.Generator | None = None) -> None:
         """Forget the sectors that were blocked and the last direction."""
