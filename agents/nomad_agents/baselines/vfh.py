@@ -156,7 +156,9 @@ class VectorFieldHistogram(Agent):
             headings = np.arange(config.sectors, dtype=np.float64) * self._width
             free = free_way(headings, cells, self._reach)
             density = np.where(free >= min(_BLOCKED, free.max()), density, np.inf)
-            best = int(np.argmax(np.where(density <= density.min() + 1e-9, free, -np.inf)))
+            way = np.where(density <= density.min() + 1e-9, np.minimum(free, longest), -np.inf)
+            cost = np.where(way >= way.max() - 1e-9, self._cost(headings, goal), np.inf)
+            best = int(np.argmin(cost))
         self._last = float(headings[best])
         length = min(max(float(free[best]), _BLOCKED), longest)
         return Decision(action_towards(self._last, length, goal, self.action), "reacted")
