@@ -1,16 +1,30 @@
 """Agents by name, and configurations by name."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from nomad_agents.agent import Agent
-from nomad_agents.baselines import Planner, Straight
+from nomad_agents.baselines import (
+    DynamicWindow,
+    Planner,
+    PotentialField,
+    RandomMoves,
+    Straight,
+    VectorFieldHistogram,
+)
 from nomad_agents.checkpoint import load_checkpoint
 from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner, ReactivePlannerConfig
 from nomad_mj.errors import CheckpointError, UnknownNameError
 from nomad_mj.types import SensorLayout
 
-AGENTS: dict[str, type[ReactivePlanner] | type[Planner] | type[Straight]] = {
-    agent.name: agent for agent in (ReactivePlanner, Planner, Straight)
+AGENTS: dict[str, Callable[[SensorLayout, ReactivePlannerConfig], Agent]] = {
+    ReactivePlanner.name: ReactivePlanner,
+    Planner.name: Planner,
+    Straight.name: Straight,
+    RandomMoves.name: RandomMoves,
+    VectorFieldHistogram.name: VectorFieldHistogram,
+    PotentialField.name: PotentialField,
+    DynamicWindow.name: DynamicWindow,
 }
 
 
