@@ -73,6 +73,6 @@ def test_many_percepts_at_once_are_the_same_as_one_by_one(observation: Observati
     ranges, headings = rng.random((20, 11)) * LONGEST, rng.uniform(-4, 4, 20)
     goals = rng.uniform(-5, 5, (20, 2))
     together = code_percept(perceive(ranges, headings, goals, LAYOUT, SPEC), LAYOUT, observation)
-    for row, *one in zip(together, ranges, headings, goals, strict=True):
-        alone = code_percept(perceive(*one, LAYOUT, SPEC), LAYOUT, observation)
-        assert np.array_equal(row, alone)
+    for number, row in enumerate(together):
+        one = perceive(ranges[number], headings[number], goals[number], LAYOUT, SPEC)
+        assert np.array_equal(row, code_percept(one, LAYOUT, observation))

@@ -13,6 +13,7 @@ from nomad_agents.cli.progress import TrainingProgress
 from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.cli.train_deep import run_deep_training
 from nomad_agents.deep import LEARNERS
+from nomad_agents.deep.environment import make_env
 from nomad_agents.deep.extra import require_extra
 from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner
 from nomad_agents.registry import find_agent, find_config
@@ -80,7 +81,9 @@ class Train(TaskOptions):
         with self.path_finding() as test, interruptible():
             name = f"{test.scene.arena.name}_{self.agent}_{self.observation}_{self.seed}"
             path = output_file(self.out, name, ".npz")
-            with closing(self.gym_env(self.observation, settings.goal_bonus)) as env:
+            task, goal = self._task_kwargs(), self._goal_place()
+            made = make_env(settings, self.observation, self.room, self.robot, task, goal)
+            with closing(made) as env:
                 report = run_deep_training(
                     env,
                     test,

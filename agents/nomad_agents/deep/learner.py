@@ -17,6 +17,7 @@ from torch import nn
 from typing_extensions import Self
 
 from nomad_agents.deep.agent import DeepAgent
+from nomad_agents.deep.environment import task_of
 from nomad_agents.deep.policy import Policy
 from nomad_agents.deep.settings import DeepSettings, PpoSettings, Td3Settings
 from nomad_agents.deep.training import DeepTraining
@@ -46,6 +47,7 @@ class Learner:
         self._stack = ExitStack()
 
     def __enter__(self) -> Self:
+        task_of(self._env)
         self._stack.enter_context(_own_chance())
         self._stack.enter_context(_one_thread())
         self.model = make_model(self._settings, self._env, self._seed)
@@ -61,10 +63,9 @@ class Learner:
 
     def agent(self) -> DeepAgent:
         """Return the agent as it is now; it does not change when learning goes on."""
-        task = self._env.unwrapped
-        return DeepAgent(
-            task.layout, task.situation, task.observation, policy_of(self.model), self._settings
-        )
+        task = task_of(self._env)
+        layout, policy = task.env.scene.robot.layout, policy_of(self.model)
+        return DeepAgent(layout, task.situation, task.observation, policy, self._settings)
 
     def learn(
         self,

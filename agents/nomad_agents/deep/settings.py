@@ -30,6 +30,8 @@ class _OffPolicy:
         Share by which the target networks follow at each update.
     goal_bonus : float
         Reward for reaching the goal, beside z.
+    episode_decisions : int
+        An episode of training is given up after so many decisions.
     """
 
     hidden: tuple[int, ...] = (128, 128)
@@ -41,6 +43,7 @@ class _OffPolicy:
     gradient_steps: int = 1
     tau: float = 0.005
     goal_bonus: float = 2.0
+    episode_decisions: int = 50
 
 
 @dataclass(frozen=True)
@@ -77,7 +80,7 @@ class PpoSettings:
 
     Attributes
     ----------
-    hidden, gamma, learning_rate, batch_size, goal_bonus
+    hidden, gamma, learning_rate, batch_size, goal_bonus, episode_decisions
         As of SAC and TD3.
     rollout : int
         Decisions between two rounds of updates.
@@ -99,6 +102,7 @@ class PpoSettings:
     gae_lambda: float = 0.95
     entropy: float = 0.0
     goal_bonus: float = 2.0
+    episode_decisions: int = 50
 
 
 DeepSettings: TypeAlias = SacSettings | Td3Settings | PpoSettings
