@@ -64,7 +64,7 @@ class Learner:
     def agent(self) -> DeepAgent:
         """Return the agent as it is now; it does not change when learning goes on."""
         task = task_of(self._env)
-        layout, policy = task.env.scene.robot.layout, policy_of(self.model)
+        layout, policy = task.task.scene.robot.layout, policy_of(self.model)
         return DeepAgent(layout, task.situation, task.observation, policy, self._settings)
 
     def learn(
