@@ -69,6 +69,10 @@ def test_killed_after_any_episode_nothing_is_lost_and_nothing_twice(
     assert curves_of(tmp_path) == whole[1]
 
 
+def nothing(*_: object) -> None:
+    """Stand for what a process that is gone does not do."""
+
+
 def killing(
     patch: pytest.MonkeyPatch, episodes: int
 ) -> Callable[[Curves, Training, ReactivePlanner], None]:
@@ -78,7 +82,7 @@ def killing(
     def add_or_die(self: Curves, training: Training, agent: ReactivePlanner) -> None:
         add(self, training, agent)
         if next(counted) == episodes:
-            patch.setattr("nomad_agents.cli.train.save_checkpoint", lambda *_: None)
+            patch.setattr("nomad_agents.cli.train.save_checkpoint", nothing)
             raise Killed
 
     return add_or_die

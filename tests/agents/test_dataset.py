@@ -36,6 +36,7 @@ def test_a_dataset_drives_again_to_the_same_bits(
     for episode, how in zip(dataset.iterate_episodes(), told, strict=True):
         seen, info = env.reset(seed=how["seed"], options=how["options"])
         assert 1 <= len(episode.actions) <= 6
+        terminated = truncated = False
         for number, action in enumerate(episode.actions):
             assert same(seen, episode.observations, number) and same(info, episode.infos, number)
             seen, reward, terminated, truncated, info = env.step(action)

@@ -106,7 +106,7 @@ def test_options_survive_a_specification_written_as_json() -> None:
 @pytest.mark.parametrize("context", ["fork", "spawn"])
 def test_other_processes_come_to_the_same(context: str) -> None:
     options: dict[str, Any] = {"room": "paper_room", "robot": "pioneer"}
-    envs = gymnasium.make_vec(
+    envs: Any = gymnasium.make_vec(
         PATH_FINDING, 2, "async", vector_kwargs={"context": context}, task_kwargs=NOISY, **options
     )
     alone = [gymnasium.make(PATH_FINDING, task_kwargs=NOISY, **options) for _ in range(2)]

@@ -38,7 +38,8 @@ WRONG: list[tuple[str, dict[str, Any], str]] = [
 @pytest.mark.parametrize(("name", "options", "told"), WRONG)
 def test_options(name: str, options: dict[str, Any], told: str) -> None:
     with pytest.raises(NomadError, match=f"^{told}") as error:
-        gymnasium.make(name, **{"robot": "khepera", **options})
+        made: dict[str, Any] = {"robot": "khepera", **options}
+        gymnasium.make(name, **made)
     assert "\n" not in str(error.value)
 
 

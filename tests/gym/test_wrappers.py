@@ -25,7 +25,7 @@ def make(**options: Any) -> "gymnasium.Env[Any, Any]":
 def drive(env: "gymnasium.Env[Any, Any]") -> dict[str, Any]:
     """Go straight until the episode is over; return the last info."""
     env.reset(seed=0, options={"start": 0})
-    info, over = dict[str, Any](), False
+    info, over, truncated = dict[str, Any](), False, False
     while not over:
         observed, _, terminated, truncated, info = env.step(STRAIGHT)
         assert observed in env.observation_space
