@@ -2,6 +2,7 @@
 
 import math
 from collections import OrderedDict
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from nomad_mj.tasks.bumpers import StickyBumpers
 from nomad_mj.tasks.config import MotorConfig
 from nomad_mj.tasks.gyroscope import GyroscopeStream
 from nomad_mj.tasks.odometry import Odometry
-from nomad_mj.tasks.physics import NavigationPhysics
+from nomad_mj.tasks.physics import NavigationPhysics, Placeable
 from nomad_mj.tasks.ranging import Ranging
 from nomad_mj.tasks.starts import Start, resolve_start
 from nomad_mj.types import FloatArray, Pose, Travel
@@ -68,13 +69,13 @@ class MotorTask(control.Task):
             raise ConfigError(
                 "range noise grazing: needs a scene that was built with its specular_rings"
             )
-        self._ranging = Ranging(self.config.range_noise, self.config.sonar, scene.robot)
+        self.ranging = Ranging(self.config.range_noise, self.config.sonar, scene.robot)
         self._start: Start = None
         self.seed(random)
-        self._slices: list[tuple[str, int, int]] = []
+        self.slices: list[tuple[str, int, int]] = []
         first = 0
         for ring in scene.robot.layout.rings:
-            self._slices.append((ring.name, first, first + len(ring.bearings)))
+            self.slices.append((ring.name, first, first + len(ring.bearings)))
             first += len(ring.bearings)
         self._limits: FloatArray = scene.model.actuator_ctrlrange[scene.robot.controls]
         self._goal: FloatArray = scene.arena.goal
@@ -113,7 +114,7 @@ class MotorTask(control.Task):
             physics.place(start)
             self._episode += 1
             self._start = None
-        self._ranging.start(ranges, *streams[6:8])
+        self.ranging.start(ranges, *streams[6:8])
         self._err(start, odometry, *streams[8:])
         self._observation: OrderedDict[str, FloatArray] | None = None
         self.ranges: FloatArray = np.zeros(self.scene.robot.layout.count)
@@ -147,11 +148,15 @@ class MotorTask(control.Task):
         """Command the motors in the order of the drive's: see `Drive.motors`."""
         physics.command(action)
         self._observation = None
+        self.move_movers(physics)
+
+    def move_movers(self, physics: Placeable) -> None:
+        """Let what moves beside the robot go on for a control step."""
         if self.movers is not None:
             self.movers.advance(CONTROL_TIMESTEP, physics.pose()[:2])
             self._show(self.movers, physics)
 
-    def _show(self, movers: Movers, physics: NavigationPhysics | None) -> None:
+    def _show(self, movers: Movers, physics: Placeable | None) -> None:
         """Let the goal be where it has moved, and the bodies of all that moves."""
         self._goal = movers.goal
         self._goal_xy = tuple(self._goal.tolist())
@@ -187,43 +192,66 @@ class MotorTask(control.Task):
         return self._observation.copy()
 
     def _sense(self, physics: NavigationPhysics) -> "OrderedDict[str, FloatArray]":
-        self.ranges = ranges = self._ranging.read(physics)
+        self.ranges = ranges = self.ranging.read(physics.cone_ranges())
         encoders = physics.encoders()
-        travel = self.scene.robot.drive.travel(encoders, self.travel.heading)
-        turned = None
-        if self._gyroscope is not None:
-            turned = self._gyroscope.turned(physics.pose().heading)
-        self._odometry.update(travel, turned)
-        self.travel = travel
-        odometry = self._odometry.reading()
+        odometry = self.reckon(encoders, physics.pose)
         result: OrderedDict[str, FloatArray] = OrderedDict()
-        for name, first, last in self._slices:
+        for name, first, last in self.slices:
             result[name] = ranges[first:last]
-        bumpers = physics.bumpers()
-        result["bumpers"] = bumpers if self._bumpers is None else self._bumpers.tell(bumpers)
+        result["bumpers"] = self.tell_bumpers(physics.bumpers())
         result["encoders"] = encoders
         result["odometry"] = odometry
         result["goal"] = self._goal - odometry[:2]
         return result
+
+    def reckon(self, encoders: FloatArray, pose: Callable[[], Pose]) -> FloatArray:
+        """Take in what the encoders read; return the odometry, (4,) as observed.
+
+        Parameters
+        ----------
+        encoders : array (E,)
+            Their readings of this control step.
+        pose : callable
+            The true pose, asked for if there is a gyroscope.
+        """
+        travel = self.scene.robot.drive.travel(encoders, self.travel.heading)
+        turned = None
+        if self._gyroscope is not None:
+            turned = self._gyroscope.turned(pose().heading)
+        self._odometry.update(travel, turned)
+        self.travel = travel
+        return self._odometry.reading()
+
+    def tell_bumpers(self, bumpers: FloatArray) -> FloatArray:
+        """Return what the bumpers report, (B,) 0 or 1, given which are touched."""
+        return bumpers if self._bumpers is None else self._bumpers.tell(bumpers)
 
     @property
     def goal(self) -> FloatArray:
         """Where the goal is now, (2,) [m]: the one that is told, ends the episode and is drawn."""
         return self._goal.copy()
 
-    def goal_distance(self, physics: NavigationPhysics) -> float:
+    def goal_distance(self, physics: Placeable) -> float:
         """Return the true distance from the robot's centre to the goal [m]."""
         pose, goal = physics.pose(), self._goal_xy
         return math.hypot(goal[0] - pose.x, goal[1] - pose.y)
 
-    def get_reward(self, physics: NavigationPhysics) -> float:
-        """Return 1 at the goal, less the farther away, in [0, 1]."""
-        beyond = max(self.goal_distance(physics) - self.config.goal_radius, 0.0)
+    def reward_at(self, distance: float) -> float:
+        """Return the reward at a true distance from the goal [m], in [0, 1]."""
+        beyond = max(distance - self.config.goal_radius, 0.0)
         # dm_control's tolerance() with its defaults, which takes a tenth of the control step.
         return 0.1 ** (beyond / REWARD_MARGIN) ** 2
 
+    def reaches_goal(self, distance: float) -> bool:
+        """Return whether a true distance from the goal [m] is near enough."""
+        return distance <= self.config.goal_radius
+
+    def get_reward(self, physics: NavigationPhysics) -> float:
+        """Return 1 at the goal, less the farther away, in [0, 1]."""
+        return self.reward_at(self.goal_distance(physics))
+
     def get_termination(self, physics: NavigationPhysics) -> float | None:
         """Return discount 0 at the goal, else None: the episode goes on."""
-        if self.config.ends_at_goal and self.goal_distance(physics) <= self.config.goal_radius:
+        if self.config.ends_at_goal and self.reaches_goal(self.goal_distance(physics)):
             return 0.0
         return None

@@ -1,7 +1,7 @@
 """The simulated robot, asked in its own terms: readings, encoders, pose."""
 
 import copy
-from typing import Any
+from typing import Any, Protocol
 
 import mujoco
 import numpy as np
@@ -15,6 +15,18 @@ from nomad_mj.scene import Scene
 from nomad_mj.tasks.infrared import Infrared, InfraredEffects
 from nomad_mj.tasks.readout import Readout
 from nomad_mj.types import FloatArray, IntArray, Pose
+
+
+class Placeable(Protocol):
+    """What a task asks of a simulation beside its sensors."""
+
+    def pose(self) -> Pose:
+        """Return the true pose of the robot."""
+        ...
+
+    def move_bodies(self, rows: IntArray, places: FloatArray) -> None:
+        """Put mocap bodies, given their rows (n,), at places (n, 2) [m]; the next step sees it."""
+        ...
 
 
 class NavigationPhysics(Physics):

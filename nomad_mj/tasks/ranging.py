@@ -1,10 +1,11 @@
 """Range readings: from how far the obstacles are to what the sensors report."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from nomad_mj.robots import RobotDescription
+from nomad_mj.robots import RayIndex, RobotDescription
 from nomad_mj.tasks.noise import RangeNoise, RangeNoiseStream
-from nomad_mj.tasks.physics import NavigationPhysics
 from nomad_mj.tasks.sonar import SonarEffects, Sonars
 from nomad_mj.types import FloatArray
 
@@ -42,12 +43,39 @@ class Ranging:
         if self._sonars is not None:
             self._sonars.start(np.random.default_rng(crosstalk), np.random.default_rng(dropout))
 
-    def read(self, physics: NavigationPhysics) -> FloatArray:
-        """Return the readings of this control step, (C,) [m]."""
-        rays, sonars = self._rays, self._sonars
-        ranges = physics.cone_ranges()
-        if sonars is not None:
-            ranges = sonars.hear(ranges)
-        ranges = ranges * self._noise.factors()
-        np.minimum(np.maximum(ranges, rays.minimum, out=ranges), rays.maximum, out=ranges)
-        return ranges if sonars is None else sonars.tell(ranges)
+    def read(self, cones: FloatArray) -> FloatArray:
+        """Return the readings of this control step, given each cone's shortest ray, (C,) [m]."""
+        return self._tell(_within(self._hear(cones) * self._noise.factors(), self._rays))
+
+    def _hear(self, cones: FloatArray) -> FloatArray:
+        return cones if self._sonars is None else self._sonars.hear(cones)
+
+    def _tell(self, ranges: FloatArray) -> FloatArray:
+        return ranges if self._sonars is None else self._sonars.tell(ranges)
+
+    @staticmethod
+    def read_all(robots: "Sequence[Ranging]", cones: FloatArray) -> FloatArray:
+        """Return what `read` does for each of N robots with the same options, (N, C) [m].
+
+        Parameters
+        ----------
+        robots : sequence of Ranging, length N
+            Theirs.
+        cones : array (N, C)
+            Each cone's shortest ray [m].
+        """
+        plain = robots[0]._sonars is None
+        if not plain:
+            pairs = zip(robots, cones, strict=True)
+            cones = np.array([robot._hear(own) for robot, own in pairs])
+        factors = np.array([robot._noise.factors() for robot in robots])
+        ranges = _within(cones * factors, robots[0]._rays)
+        if not plain:
+            pairs = zip(robots, ranges, strict=True)
+            ranges = np.array([robot._tell(own) for robot, own in pairs])
+        return ranges
+
+
+def _within(ranges: FloatArray, rays: RayIndex) -> FloatArray:
+    """Cut readings (..., C) to what the rings can tell, in place."""
+    return np.minimum(np.maximum(ranges, rays.minimum, out=ranges), rays.maximum, out=ranges)

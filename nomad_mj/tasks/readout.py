@@ -6,6 +6,8 @@ is read is the same to the bit either way.
 
 import math
 from dataclasses import dataclass
+from functools import cached_property, reduce
+from operator import add
 
 import mujoco
 import numpy as np
@@ -73,7 +75,7 @@ class Readout:
         grazing : float, optional
             As of `RangeNoise`: a specular ray whose echo is lost counts as a miss.
         """
-        values = sensordata.take(self.rays.address, axis=-1)
+        values = sensordata.take(self.rays.address, axis=-1, mode="clip")
         np.copyto(values, _MISS, where=values < 0)
         if grazing is not None:
             specular = self.rays.specular
@@ -101,11 +103,22 @@ class Readout:
 
     def encoders(self, sensordata: FloatArray, history: FloatArray, qpos: FloatArray) -> FloatArray:
         """Return what the encoders read, (..., W + A): ways in the step [m], angles [rad]."""
-        before = history.take(self.speeds, axis=-1)
-        # One after the other whatever the shape, which a plain sum does not promise.
-        ways = np.add.accumulate(before, axis=-1)[..., -1]
-        ways = (ways + sensordata.take(self.speed_now, axis=-1)) * self.scales
+        # Sums one after the other whatever the shape, which neither sum() nor np.sum() promises.
+        if history.ndim == 1:  # so few that lists are faster
+            now = sensordata.take(self.speed_now).tolist()
+            before = history.take(self.speeds).tolist()
+            ways = [
+                (reduce(add, past) + last) * scale
+                for past, last, scale in zip(before, now, self._scales, strict=True)
+            ]
+            return np.array(ways + qpos.take(self.angles).tolist())
+        past = np.add.accumulate(history.take(self.speeds, axis=-1), axis=-1)[..., -1]
+        ways = (past + sensordata.take(self.speed_now, axis=-1)) * self.scales
         return np.concatenate([ways, qpos.take(self.angles, axis=-1)], axis=-1)
+
+    @cached_property
+    def _scales(self) -> list[float]:
+        return self.scales.tolist()
 
 
 def _samples(model: mujoco.MjModel, sensors: list[int]) -> IntArray:
