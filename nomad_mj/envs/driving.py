@@ -21,7 +21,7 @@ class Move(NamedTuple):
     ticks: int = 0
 
 
-def asked_move(action: Any, goal: FloatArray, spec: ActionSpec) -> FloatArray:
+def asked_move(action: Any, goal: FloatArray, spec: ActionSpec, name: str = "action") -> FloatArray:
     """Return the displacement (2,) [m] that an action asks for, clipped to [-1, 1].
 
     Raises
@@ -31,7 +31,7 @@ def asked_move(action: Any, goal: FloatArray, spec: ActionSpec) -> FloatArray:
     """
     action = np.asarray(action, dtype=np.float64)
     if action.shape != (2,) or not np.isfinite(action).all():
-        raise ValueError(f"action {action}: must be two finite numbers (dx, dy) in [-1, 1]")
+        raise ValueError(f"{name} {action}: must be two finite numbers (dx, dy) in [-1, 1]")
     return displacement(np.clip(action, -1.0, 1.0), goal, spec)
 
 

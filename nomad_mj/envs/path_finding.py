@@ -33,6 +33,21 @@ class PathFindingConfig:
     motion: MotionConfig = field(default_factory=MotionConfig)
 
 
+def move_spec() -> specs.BoundedArray:
+    """Return the limits of an action: (dx, dy) in [-1, 1]."""
+    return specs.BoundedArray((2,), np.float64, -1.0, 1.0, name="move")
+
+
+def told_of_moves(motion: MotionConfig) -> "OrderedDict[str, specs.Array]":
+    """Return the shapes and limits of what is told of a move."""
+    return OrderedDict(
+        duration=specs.BoundedArray((), np.float64, 0.0, motion.longest, name="duration"),
+        driven=specs.BoundedArray((), np.float64, 0.0, np.inf, name="driven"),
+        clearance=specs.BoundedArray((), np.float64, 0.0, np.inf, name="clearance"),
+        outcome=specs.DiscreteArray(len(Outcome), np.int32, name="outcome"),
+    )
+
+
 class PathFinding(dm_env.Environment):
     """Find the way to the goal, one move at a time.
 
@@ -84,7 +99,7 @@ class PathFinding(dm_env.Environment):
 
     def action_spec(self) -> specs.BoundedArray:
         """Return (dx, dy) in [-1, 1]."""
-        return specs.BoundedArray((2,), np.float64, -1.0, 1.0, name="move")
+        return move_spec()
 
     def reward_spec(self) -> specs.BoundedArray:
         """Return z in [-1, 0]; lower if moves can be longer than 1 m."""
@@ -94,11 +109,7 @@ class PathFinding(dm_env.Environment):
     def observation_spec(self) -> "OrderedDict[str, specs.Array]":
         """Return the motor task's observations and what is told of the move."""
         result = OrderedDict(self.motor.observation_spec())
-        limit = self.config.motion.longest
-        result["duration"] = specs.BoundedArray((), np.float64, 0.0, limit, name="duration")
-        result["driven"] = specs.BoundedArray((), np.float64, 0.0, np.inf, name="driven")
-        result["clearance"] = specs.BoundedArray((), np.float64, 0.0, np.inf, name="clearance")
-        result["outcome"] = specs.DiscreteArray(len(Outcome), np.int32, name="outcome")
+        result.update(told_of_moves(self.config.motion))
         return result
 
     def reset(

@@ -165,11 +165,19 @@ class MotorTask(control.Task):
 
     def action_spec(self, physics: NavigationPhysics) -> specs.BoundedArray:
         """Return the motors' limits, (M,)."""
+        return self.motor_spec()
+
+    def observation_spec(self, physics: NavigationPhysics) -> "OrderedDict[str, specs.Array]":
+        """Return the shapes and limits of the observations."""
+        return self.sensor_spec()
+
+    def motor_spec(self) -> specs.BoundedArray:
+        """Return the motors' limits, (M,)."""
         low, high = self._limits.T
         motors = self.scene.robot.drive.motors
         return specs.BoundedArray((len(motors),), np.float64, low, high, name="\t".join(motors))
 
-    def observation_spec(self, physics: NavigationPhysics) -> "OrderedDict[str, specs.Array]":
+    def sensor_spec(self) -> "OrderedDict[str, specs.Array]":
         """Return the shapes and limits of the observations."""
         robot = self.scene.robot
         result: OrderedDict[str, specs.Array] = OrderedDict()
