@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections import OrderedDict
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,8 @@ from nomad_mj.errors import ConfigError
 from nomad_mj.scene import Scene
 from nomad_mj.tasks import MotorTask, Start
 from nomad_mj.types import FloatArray, IntArray
+
+BoolArray: TypeAlias = "npt.NDArray[np.bool_]"
 
 
 class BatchEnvironment(ABC):
@@ -110,11 +112,13 @@ class BatchEnvironment(ABC):
         self._reward[chosen] = self._discount[chosen] = np.nan
         self._begun(chosen)
 
-    def _tell(self, world: int, reward: float, ended: bool, elapsed: bool) -> None:
-        """Note how a step of a world went: its reward, whether it is at the goal, out of time."""
-        self._type[world] = LAST if ended or elapsed else MID
-        self._reward[world] = reward
-        self._discount[world] = 0.0 if ended else 1.0
+    def _tell(
+        self, worlds: IntArray, rewards: list[float], ended: BoolArray, elapsed: BoolArray
+    ) -> None:
+        """Note how steps of worlds (n,) went: rewards, who is at the goal, who out of time."""
+        self._type[worlds] = np.where(ended | elapsed, LAST, MID)
+        self._reward[worlds] = rewards
+        self._discount[worlds] = np.where(ended, 0.0, 1.0)
 
     def time_step(self) -> BatchTimeStep:
         """Return the present time step of every world, copied."""

@@ -66,7 +66,11 @@ class Lot:
         self._mocap_pos: FloatArray = self._batch.bind("mocap_pos")
         self._controls = robot.controls
         self._footing = robot.footing
-        self._readout = Readout.of(model, robot)
+        # History and positions lie in the rows of the state, which can be taken from as they are.
+        self._readout = Readout.of(model, robot).moved(
+            history=_offset(self._batch.state, self._history),
+            qpos=_offset(self._batch.state, self._qpos),
+        )
         self._sub_steps = round(CONTROL_TIMESTEP / model.opt.timestep)
         self._grazing = config.range_noise.grazing
         self._lights = self._infrared(config, scenes)
@@ -154,11 +158,9 @@ class Lot:
     def read(self, rows: IntArray) -> Sensed:
         """Return what the sensors of worlds, by their rows (n,), read now."""
         readout = self._readout
-        arrays = self._sensordata, self._history, self._qpos
+        sensordata, state = self._sensordata, self._batch.state
         if len(rows) < len(self.worlds):
-            sensordata, history, qpos = (array[rows] for array in arrays)
-        else:
-            sensordata, history, qpos = arrays
+            sensordata, state = sensordata[rows], state[rows]
         distances = readout.distances(sensordata, self._grazing)
         if self._lights:
             for row, own in zip(rows.tolist(), distances, strict=True):
@@ -166,13 +168,23 @@ class Lot:
                 self._lights[row].judge(own, self._models[row], self._scratch)
         return Sensed(
             readout.cones(distances),
-            readout.bumpers(history),
-            readout.encoders(sensordata, history, qpos),
+            readout.bumpers(state),
+            readout.encoders(sensordata, state, state),
         )
+
+    def places(self, rows: IntArray) -> FloatArray:
+        """Return where the robots of worlds, by their rows (n,), truly are, (n, 2) [m]."""
+        return self._qpos[rows[:, None], [self._footing.x, self._footing.y]]
 
     def pose(self, row: int) -> Pose:
         """Return the true pose of a world's robot."""
         return self._footing.pose(self._qpos[row])
+
+
+def _offset(state: FloatArray, view: FloatArray) -> int:
+    """Return in which column of the state's rows a view of them begins."""
+    start = view.__array_interface__["data"][0] - state.__array_interface__["data"][0]
+    return int(start) // state.itemsize
 
 
 def _addresses(scene: Scene) -> list[bytes]:

@@ -36,6 +36,7 @@ class BatchMotor(BatchEnvironment):
     ) -> None:
         super().__init__(worlds, time_limit)
         self._flat = flat_observation
+        self._motors = len(worlds.tasks[0].scene.robot.drive.motors)
         self._steps = np.zeros(worlds.count, dtype=np.intp)
         timestep = worlds.tasks[0].scene.model.opt.timestep
         self._most = time_limit / (timestep * round(CONTROL_TIMESTEP / timestep))
@@ -69,7 +70,7 @@ class BatchMotor(BatchEnvironment):
             episode at their next step.
         """
         chosen = self.worlds.chosen(mask)
-        given = self._check_actions(actions, self.action_spec().shape[1])
+        given = self._check_actions(actions, self._motors)
         over = self._type[chosen] == LAST
         going = chosen[~over]
         if over.any():
@@ -77,12 +78,11 @@ class BatchMotor(BatchEnvironment):
         self._type[going] = LAST  # should it fail
         self.worlds.step(going, given[going])
         self._steps[going] += 1
-        for world, distance in zip(going.tolist(), self.worlds.goal_distances(going), strict=True):
-            task = self.worlds.tasks[world]
-            elapsed = bool(self._steps[world] >= self._most)
-            ended = task.config.ends_at_goal and task.reaches_goal(distance)
-            # dm_control looks at the clock first.
-            self._tell(world, task.reward_at(distance), ended and not elapsed, elapsed)
+        distances, task = self.worlds.goal_distances(going), self.worlds.tasks[0]
+        elapsed = self._steps[going] >= self._most
+        ended = np.array([task.ends_at(distance) for distance in distances], dtype=bool)
+        # dm_control looks at the clock first.
+        self._tell(going, [task.reward_at(d) for d in distances], ended & ~elapsed, elapsed)
         return self.time_step()
 
     def _begun(self, chosen: IntArray) -> None:

@@ -175,8 +175,9 @@ class BatchPathFinding(BatchEnvironment):
         self._note(world, done)
         task = self.worlds.tasks[world]
         ended = task.reaches_goal(task.goal_distance(self.worlds.worlds[world]))
-        elapsed = bool(self._ticks[world] * CONTROL_TIMESTEP >= self._time_limit)
-        self._tell(world, reward_of(done, move, goal), ended, elapsed)
+        elapsed = self._ticks[[world]] * CONTROL_TIMESTEP >= self._time_limit
+        reward = reward_of(done, move, goal)
+        self._tell(np.array([world]), [reward], np.array([ended]), elapsed)
 
     def _note(self, world: int, done: Move) -> None:
         self._duration[world] = done.ticks * CONTROL_TIMESTEP

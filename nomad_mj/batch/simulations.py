@@ -78,6 +78,16 @@ class Simulations:
                 into[chosen] = array
         return Sensed(*whole)
 
+    def places(self, worlds: IntArray) -> FloatArray:
+        """Return where the robots of worlds (n,), ascending, truly are, (n, 2) [m]."""
+        parts = self._parts(worlds)
+        if len(parts) == 1:
+            return parts[0][0].places(parts[0][2])
+        result = np.empty((len(worlds), 2))
+        for lot, chosen, rows in parts:
+            result[chosen] = lot.places(rows)
+        return result
+
     def pose(self, world: int) -> Pose:
         """Return the true pose of a world's robot."""
         lot, row = self._where[world]

@@ -1,5 +1,6 @@
 """N robots, each in its own room: sensed, reset and advanced together."""
 
+import math
 from collections import OrderedDict
 from collections.abc import Sequence
 
@@ -10,7 +11,7 @@ from nomad_mj.batch.simulations import Moved, Simulations
 from nomad_mj.errors import ConfigError, NomadError, StartError
 from nomad_mj.scene import Scene
 from nomad_mj.tasks import MotorConfig, MotorTask, NavigationPhysics, Start, resolve_start
-from nomad_mj.tasks.ranging import Ranging
+from nomad_mj.tasks.ranging import RangingOfMany
 from nomad_mj.types import FloatArray, IntArray, Pose
 
 Seed = int | np.random.SeedSequence | None
@@ -73,7 +74,10 @@ class Worlds:
         self._simulations = Simulations(scenes, config, threads)
         self._moved: Moved = {}
         self.worlds = [World(i, self._simulations, self._moved) for i in range(self.count)]
-        self._rangings: list[Ranging] = [task.ranging for task in self.tasks]
+        self._ranging = RangingOfMany([task.ranging for task in self.tasks])
+        self._poses = [world.pose for world in self.worlds]
+        self._goals = [(0.0, 0.0)] * self.count  # where each goal is now [m]
+        self._moves = any(task.movers is not None for task in self.tasks)
         robot = first.robot
         self._plain_bumpers = not config.bumper_noise.active
 
@@ -129,6 +133,8 @@ class Worlds:
             self.encoders[world] = told["encoders"]
             self.odometry[world] = told["odometry"]
             self.goal[world] = told["goal"]
+            self._ranging.go_on(world)
+            self._goals[world] = task.goal_xy
 
     def step(self, worlds: IntArray, commands: FloatArray) -> None:
         """Advance worlds (n,), ascending, by a control step, and sense.
@@ -148,35 +154,38 @@ class Worlds:
         if not len(worlds):
             return
         chosen: list[int] = worlds.tolist()
-        tasks = [self.tasks[world] for world in chosen]
         self._moved.clear()
-        if tasks[0].movers is not None or any(task.movers is not None for task in tasks):
-            for world, task in zip(chosen, tasks, strict=True):
-                task.move_movers(self.worlds[world])
+        if self._moves:
+            for world in chosen:
+                self.tasks[world].move_movers(self.worlds[world])
+                self._goals[world] = self.tasks[world].goal_xy
         self._simulations.step(worlds, commands, self._moved)
-        self._sense(worlds, chosen, tasks)
+        self._sense(worlds, chosen)
 
-    def _sense(self, worlds: IntArray, chosen: list[int], tasks: list[MotorTask]) -> None:
+    def _sense(self, worlds: IntArray, chosen: list[int]) -> None:
         """Read the sensors of worlds."""
         cones, bumpers, encoders = self._simulations.read(worlds)
-        rangings = [self._rangings[world] for world in chosen]
-        self.ranges[worlds] = Ranging.read_all(rangings, cones)
+        tasks, poses = self.tasks, self._poses
+        self.ranges[worlds] = self._ranging.read(worlds, cones)
         self.encoders[worlds] = encoders
-        self.odometry[worlds] = odometry = np.array(
-            [
-                task.reckon(own, self.worlds[world].pose)
-                for world, task, own in zip(chosen, tasks, encoders, strict=True)
-            ]
-        )
+        pairs = zip(chosen, encoders.tolist(), strict=True)
+        odometry = np.array([tasks[world].reckon(own, poses[world]) for world, own in pairs])
+        self.odometry[worlds] = odometry
         if not self._plain_bumpers:
-            told = zip(tasks, bumpers, strict=True)
-            bumpers = np.array([task.tell_bumpers(own) for task, own in told])
+            told = zip(chosen, bumpers, strict=True)
+            bumpers = np.array([tasks[world].tell_bumpers(own) for world, own in told])
         self.bumpers[worlds] = bumpers
-        self.goal[worlds] = np.array([task.goal for task in tasks]) - odometry[:, :2]
+        goals = np.array([self._goals[world] for world in chosen])
+        self.goal[worlds] = goals - odometry[:, :2]
 
     def goal_distances(self, worlds: IntArray) -> list[float]:
         """Return the true distances of robots to their goals [m]."""
-        return [self.tasks[world].goal_distance(self.worlds[world]) for world in worlds.tolist()]
+        goals = [self._goals[world] for world in worlds.tolist()]
+        places = self._simulations.places(worlds).tolist()
+        return [
+            math.hypot(goal_x - x, goal_y - y)
+            for (goal_x, goal_y), (x, y) in zip(goals, places, strict=True)
+        ]
 
     def observe(self) -> "OrderedDict[str, FloatArray]":
         """Return the observations of all worlds, copied."""

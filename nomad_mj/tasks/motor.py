@@ -2,7 +2,7 @@
 
 import math
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -49,6 +49,8 @@ class MotorTask(control.Task):
         Where the present episode started.
     ranges : array (layout.count,)
         The range readings of this control step, all rings concatenated [m].
+    goal_xy : (float, float)
+        Where the goal is now [m].
     travel : Travel
         What the encoders tell of this control step, without drift.
     movers : Movers or None
@@ -79,7 +81,7 @@ class MotorTask(control.Task):
             first += len(ring.bearings)
         self._limits: FloatArray = scene.model.actuator_ctrlrange[scene.robot.controls]
         self._goal: FloatArray = scene.arena.goal
-        self._goal_xy: tuple[float, float] = tuple(self._goal.tolist())
+        self.goal_xy: tuple[float, float] = tuple(self._goal.tolist())
         radius = scene.robot.layout.radius
         moving = scene.moving
         self.movers = Movers(moving, scene.plan, self._goal, radius) if moving else None
@@ -159,7 +161,7 @@ class MotorTask(control.Task):
     def _show(self, movers: Movers, physics: Placeable | None) -> None:
         """Let the goal be where it has moved, and the bodies of all that moves."""
         self._goal = movers.goal
-        self._goal_xy = tuple(self._goal.tolist())
+        self.goal_xy = tuple(self._goal.tolist())
         if physics is not None:
             physics.move_bodies(movers.rows, movers.body_places())
 
@@ -202,7 +204,7 @@ class MotorTask(control.Task):
     def _sense(self, physics: NavigationPhysics) -> "OrderedDict[str, FloatArray]":
         self.ranges = ranges = self.ranging.read(physics.cone_ranges())
         encoders = physics.encoders()
-        odometry = self.reckon(encoders, physics.pose)
+        odometry = np.array(self.reckon(encoders.tolist(), physics.pose))
         result: OrderedDict[str, FloatArray] = OrderedDict()
         for name, first, last in self.slices:
             result[name] = ranges[first:last]
@@ -212,12 +214,14 @@ class MotorTask(control.Task):
         result["goal"] = self._goal - odometry[:2]
         return result
 
-    def reckon(self, encoders: FloatArray, pose: Callable[[], Pose]) -> FloatArray:
-        """Take in what the encoders read; return the odometry, (4,) as observed.
+    def reckon(
+        self, encoders: Sequence[float], pose: Callable[[], Pose]
+    ) -> tuple[float, float, float, float]:
+        """Take in what the encoders read; return the odometry as observed.
 
         Parameters
         ----------
-        encoders : array (E,)
+        encoders : sequence of float, length E
             Their readings of this control step.
         pose : callable
             The true pose, asked for if there is a gyroscope.
@@ -228,7 +232,7 @@ class MotorTask(control.Task):
             turned = self._gyroscope.turned(pose().heading)
         self._odometry.update(travel, turned)
         self.travel = travel
-        return self._odometry.reading()
+        return self._odometry.told()
 
     def tell_bumpers(self, bumpers: FloatArray) -> FloatArray:
         """Return what the bumpers report, (B,) 0 or 1, given which are touched."""
@@ -241,7 +245,7 @@ class MotorTask(control.Task):
 
     def goal_distance(self, physics: Placeable) -> float:
         """Return the true distance from the robot's centre to the goal [m]."""
-        pose, goal = physics.pose(), self._goal_xy
+        pose, goal = physics.pose(), self.goal_xy
         return math.hypot(goal[0] - pose.x, goal[1] - pose.y)
 
     def reward_at(self, distance: float) -> float:
@@ -249,6 +253,10 @@ class MotorTask(control.Task):
         beyond = max(distance - self.config.goal_radius, 0.0)
         # dm_control's tolerance() with its defaults, which takes a tenth of the control step.
         return 0.1 ** (beyond / REWARD_MARGIN) ** 2
+
+    def ends_at(self, distance: float) -> bool:
+        """Return whether the episode ends at a true distance from the goal [m]."""
+        return self.config.ends_at_goal and self.reaches_goal(distance)
 
     def reaches_goal(self, distance: float) -> bool:
         """Return whether a true distance from the goal [m] is near enough."""
@@ -260,6 +268,4 @@ class MotorTask(control.Task):
 
     def get_termination(self, physics: NavigationPhysics) -> float | None:
         """Return discount 0 at the goal, else None: the episode goes on."""
-        if self.config.ends_at_goal and self.reaches_goal(self.goal_distance(physics)):
-            return 0.0
-        return None
+        return 0.0 if self.ends_at(self.goal_distance(physics)) else None

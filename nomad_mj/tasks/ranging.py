@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from nomad_mj.robots import RayIndex, RobotDescription
-from nomad_mj.tasks.noise import RangeNoise, RangeNoiseStream
+from nomad_mj.tasks.noise import RangeNoise, RangeNoiseStream, RangeNoiseStreams
 from nomad_mj.tasks.sonar import SonarEffects, Sonars
-from nomad_mj.types import FloatArray
+from nomad_mj.types import FloatArray, IntArray
 
 
 class Ranging:
@@ -53,24 +53,42 @@ class Ranging:
     def _tell(self, ranges: FloatArray) -> FloatArray:
         return ranges if self._sonars is None else self._sonars.tell(ranges)
 
-    @staticmethod
-    def read_all(robots: "Sequence[Ranging]", cones: FloatArray) -> FloatArray:
-        """Return what `read` does for each of N robots with the same options, (N, C) [m].
+
+class RangingOfMany:
+    """The range sensors of N robots under the same options, read at once.
+
+    Parameters
+    ----------
+    robots : sequence of Ranging, length N
+        Each by itself; their streams are drawn from here once `go_on` has been called.
+    """
+
+    def __init__(self, robots: Sequence[Ranging]) -> None:
+        self._robots = robots
+        self._rays = robots[0]._rays
+        self._affected = robots[0]._sonars is not None
+        self._noise = RangeNoiseStreams(len(robots), robots[0]._count)
+
+    def go_on(self, number: int) -> None:
+        """Take over the episode of a robot, from where it is by itself."""
+        self._noise.go_on(number, self._robots[number]._noise)
+
+    def read(self, numbers: IntArray, cones: FloatArray) -> FloatArray:
+        """Return what `Ranging.read` does for each of some robots (n,), (n, C) [m].
 
         Parameters
         ----------
-        robots : sequence of Ranging, length N
-            Theirs.
-        cones : array (N, C)
+        numbers : array (n,)
+            Which robots.
+        cones : array (n, C)
             Each cone's shortest ray [m].
         """
-        plain = robots[0]._sonars is None
-        if not plain:
+        robots = [self._robots[number] for number in numbers.tolist()] if self._affected else []
+        if robots:
             pairs = zip(robots, cones, strict=True)
             cones = np.array([robot._hear(own) for robot, own in pairs])
-        factors = np.array([robot._noise.factors() for robot in robots])
-        ranges = _within(cones * factors, robots[0]._rays)
-        if not plain:
+        ranges = _within(cones * self._noise.factors(numbers), self._rays)
+        if robots:
             pairs = zip(robots, ranges, strict=True)
             ranges = np.array([robot._tell(own) for robot, own in pairs])
         return ranges

@@ -5,7 +5,7 @@ is read is the same to the bit either way.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, reduce
 from operator import add
 
@@ -63,6 +63,15 @@ class Readout:
             speeds=np.ascontiguousarray(_samples(model, encoders.speeds.tolist()).T),
             scales=encoders.scales * float(model.opt.timestep),
             angles=encoders.angles,
+        )
+
+    def moved(self, history: int, qpos: int) -> Self:
+        """Return the same for arrays in which history and positions begin farther on."""
+        return replace(
+            self,
+            touch=self.touch + history,
+            speeds=self.speeds + history,
+            angles=self.angles + qpos,
         )
 
     def distances(self, sensordata: FloatArray, grazing: float | None = None) -> FloatArray:
