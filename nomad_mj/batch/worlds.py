@@ -169,11 +169,11 @@ class Worlds:
         self.ranges[worlds] = self._ranging.read(worlds, cones)
         self.encoders[worlds] = encoders
         pairs = zip(chosen, encoders.tolist(), strict=True)
-        odometry = np.array([tasks[world].reckon(own, poses[world]) for world, own in pairs])
+        odometry = np.array([tasks[world].own.reckon(own, poses[world]) for world, own in pairs])
         self.odometry[worlds] = odometry
         if not self._plain_bumpers:
             told = zip(chosen, bumpers, strict=True)
-            bumpers = np.array([tasks[world].tell_bumpers(own) for world, own in told])
+            bumpers = np.array([tasks[world].own.tell_bumpers(own) for world, own in told])
         self.bumpers[worlds] = bumpers
         goals = np.array([self._goals[world] for world in chosen])
         self.goal[worlds] = goals - odometry[:, :2]
@@ -213,7 +213,7 @@ class Worlds:
             return [world_seed(seed, world) for world in range(self.count)]
         listed = isinstance(seed, Sequence | np.ndarray) and not isinstance(seed, str)
         if listed and len(seed) == self.count:
-            return [None if own is None else world_seed(own, 0) for own in seed]
+            return list(seed)
         raise ConfigError(f"seed: must be a whole number, or one for each of {self.count} worlds")
 
     def close(self) -> None:

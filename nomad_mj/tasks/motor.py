@@ -2,7 +2,6 @@
 
 import math
 from collections import OrderedDict
-from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,14 +11,12 @@ from dm_env import specs
 from nomad_mj.errors import ConfigError
 from nomad_mj.movers import Movers
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
-from nomad_mj.tasks.bumpers import StickyBumpers
 from nomad_mj.tasks.config import MotorConfig
-from nomad_mj.tasks.gyroscope import GyroscopeStream
-from nomad_mj.tasks.odometry import Odometry
 from nomad_mj.tasks.physics import NavigationPhysics, Placeable
 from nomad_mj.tasks.ranging import Ranging
+from nomad_mj.tasks.self_sensing import SelfSensing
 from nomad_mj.tasks.starts import Start, resolve_start
-from nomad_mj.types import FloatArray, Pose, Travel
+from nomad_mj.types import FloatArray, Travel
 
 REWARD_MARGIN = 5.0  # [m] from the goal at which the reward has fallen to 0.1
 
@@ -51,8 +48,10 @@ class MotorTask(control.Task):
         The range readings of this control step, all rings concatenated [m].
     goal_xy : (float, float)
         Where the goal is now [m].
-    travel : Travel
-        What the encoders tell of this control step, without drift.
+    ranging : Ranging
+        Its range sensors.
+    own : SelfSensing
+        What it senses of itself.
     movers : Movers or None
         Where the goal and the obstacles that move are now; None if nothing moves.
     random : numpy.random.Generator
@@ -117,30 +116,11 @@ class MotorTask(control.Task):
             self._episode += 1
             self._start = None
         self.ranging.start(ranges, *streams[6:8])
-        self._err(start, odometry, *streams[8:])
+        robot = self.scene.robot
+        self.own = SelfSensing(robot, self.config, start, odometry, *streams[8:])
         self._observation: OrderedDict[str, FloatArray] | None = None
-        self.ranges: FloatArray = np.zeros(self.scene.robot.layout.count)
-        self.travel = Travel(0.0, 0.0, start.heading, start.heading)
+        self.ranges: FloatArray = np.zeros(robot.layout.count)
         self.start_pose = start
-
-    def _err(
-        self,
-        start: Pose,
-        odometry: np.random.Generator,
-        bumpers: np.random.SeedSequence,
-        gyroscope: np.random.SeedSequence,
-    ) -> None:
-        """Set up what errs beside the range sensors, for an episode that starts there."""
-        config = self.config
-        self._bumpers = self._gyroscope = None
-        weight = 0.0
-        if config.bumper_noise.active:
-            rng = np.random.default_rng(bumpers)
-            self._bumpers = StickyBumpers(config.bumper_noise, len(self.scene.robot.bumpers), rng)
-        if config.gyroscope is not None:
-            rng, weight = np.random.default_rng(gyroscope), config.gyroscope.weight
-            self._gyroscope = GyroscopeStream(config.gyroscope, start.heading, rng)
-        self._odometry = Odometry(start, config.odometry_noise, odometry, weight)
 
     def initialize_episode(self, physics: NavigationPhysics) -> None:
         """Place the robot and reseed the sensors."""
@@ -204,39 +184,20 @@ class MotorTask(control.Task):
     def _sense(self, physics: NavigationPhysics) -> "OrderedDict[str, FloatArray]":
         self.ranges = ranges = self.ranging.read(physics.cone_ranges())
         encoders = physics.encoders()
-        odometry = np.array(self.reckon(encoders.tolist(), physics.pose))
+        odometry = np.array(self.own.reckon(encoders.tolist(), physics.pose))
         result: OrderedDict[str, FloatArray] = OrderedDict()
         for name, first, last in self.slices:
             result[name] = ranges[first:last]
-        result["bumpers"] = self.tell_bumpers(physics.bumpers())
+        result["bumpers"] = self.own.tell_bumpers(physics.bumpers())
         result["encoders"] = encoders
         result["odometry"] = odometry
         result["goal"] = self._goal - odometry[:2]
         return result
 
-    def reckon(
-        self, encoders: Sequence[float], pose: Callable[[], Pose]
-    ) -> tuple[float, float, float, float]:
-        """Take in what the encoders read; return the odometry as observed.
-
-        Parameters
-        ----------
-        encoders : sequence of float, length E
-            Their readings of this control step.
-        pose : callable
-            The true pose, asked for if there is a gyroscope.
-        """
-        travel = self.scene.robot.drive.travel(encoders, self.travel.heading)
-        turned = None
-        if self._gyroscope is not None:
-            turned = self._gyroscope.turned(pose().heading)
-        self._odometry.update(travel, turned)
-        self.travel = travel
-        return self._odometry.told()
-
-    def tell_bumpers(self, bumpers: FloatArray) -> FloatArray:
-        """Return what the bumpers report, (B,) 0 or 1, given which are touched."""
-        return bumpers if self._bumpers is None else self._bumpers.tell(bumpers)
+    @property
+    def travel(self) -> Travel:
+        """What the encoders tell of this control step, without drift."""
+        return self.own.travel
 
     @property
     def goal(self) -> FloatArray:
