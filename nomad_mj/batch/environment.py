@@ -10,6 +10,7 @@ import numpy.typing as npt
 from dm_env import specs
 from typing_extensions import Self
 
+from nomad_mj.batch.specs import stacked
 from nomad_mj.batch.timestep import FIRST, LAST, MID, BatchTimeStep
 from nomad_mj.batch.worlds import Mask, Seed, Worlds
 from nomad_mj.errors import ConfigError
@@ -62,8 +63,13 @@ class BatchEnvironment(ABC):
         """Return the shape and limits of actions, with N rows."""
 
     @abstractmethod
+    def single_observation_spec(self) -> "OrderedDict[str, specs.Array]":
+        """Return the shapes and limits of one world's observations."""
+
     def observation_spec(self) -> "OrderedDict[str, specs.Array]":
         """Return the shapes and limits of the observations, with N rows."""
+        single = self.single_observation_spec()
+        return OrderedDict((name, stacked(spec, self.count)) for name, spec in single.items())
 
     @abstractmethod
     def _observe(self) -> "OrderedDict[str, npt.NDArray[Any]]":

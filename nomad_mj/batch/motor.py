@@ -45,13 +45,13 @@ class BatchMotor(BatchEnvironment):
         """Return the motors' limits, (N, M)."""
         return stacked(self.tasks[0].motor_spec(), self.count)
 
-    def observation_spec(self) -> "OrderedDict[str, specs.Array]":
-        """Return the shapes and limits of the observations; flat ones have no limits."""
+    def single_observation_spec(self) -> "OrderedDict[str, specs.Array]":
+        """Return the shapes and limits of one world's observations; flat ones have no limits."""
         spec = self.tasks[0].sensor_spec()
         if self._flat:
             size = sum(int(np.prod(part.shape)) for part in spec.values())
             spec = OrderedDict([(FLAT_OBSERVATION_KEY, specs.Array((size,), np.float64))])
-        return OrderedDict((name, stacked(part, self.count)) for name, part in spec.items())
+        return spec
 
     def step(self, actions: npt.ArrayLike, mask: Mask = None) -> BatchTimeStep:
         """Advance worlds by a control step.

@@ -66,11 +66,11 @@ class BatchPathFinding(BatchEnvironment):
         """Return (dx, dy) in [-1, 1], (N, 2)."""
         return stacked(move_spec(), self.count)
 
-    def observation_spec(self) -> "OrderedDict[str, specs.Array]":
-        """Return the motor task's observations and what is told of the moves, with N rows."""
+    def single_observation_spec(self) -> "OrderedDict[str, specs.Array]":
+        """Return the motor task's observations of one world and what is told of a move."""
         spec = self.tasks[0].sensor_spec()
         spec.update(told_of_moves(self.config.motion))
-        return OrderedDict((name, stacked(part, self.count)) for name, part in spec.items())
+        return spec
 
     def step(self, actions: npt.ArrayLike, mask: Mask = None) -> BatchTimeStep:
         """Carry out one move of each world and return what became of them.

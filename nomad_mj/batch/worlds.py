@@ -8,29 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from nomad_mj.batch.simulations import Moved, Simulations
+from nomad_mj.batch.world import World
 from nomad_mj.errors import ConfigError, NomadError, StartError
 from nomad_mj.scene import Scene
 from nomad_mj.tasks import MotorConfig, MotorTask, NavigationPhysics, Start, resolve_start
 from nomad_mj.tasks.ranging import RangingOfMany
-from nomad_mj.types import FloatArray, IntArray, Pose
+from nomad_mj.types import FloatArray, IntArray
 
 Seed = int | np.random.SeedSequence | None
 Mask = npt.NDArray[np.bool_] | Sequence[bool] | None
-
-
-class World:
-    """One world, as its task asks for it."""
-
-    def __init__(self, number: int, simulations: Simulations, moved: Moved) -> None:
-        self._number, self._simulations, self._moved = number, simulations, moved
-
-    def pose(self) -> Pose:
-        """Return the true pose of the robot."""
-        return self._simulations.pose(self._number)
-
-    def move_bodies(self, rows: IntArray, places: FloatArray) -> None:
-        """Put mocap bodies, given their rows (n,), at places (n, 2) [m], in the step to come."""
-        self._moved[self._number] = rows, places
 
 
 class Worlds:
@@ -73,9 +59,7 @@ class Worlds:
         self._nurseries = {id(scene): _nursery(scene, config) for scene in scenes}
         self._simulations = Simulations(scenes, config, threads)
         self._moved: Moved = {}
-        self.worlds = [World(i, self._simulations, self._moved) for i in range(self.count)]
         self._ranging = RangingOfMany([task.ranging for task in self.tasks])
-        self._poses = [world.pose for world in self.worlds]
         self._goals = [(0.0, 0.0)] * self.count  # where each goal is now [m]
         self._moves = any(task.movers is not None for task in self.tasks)
         robot = first.robot
@@ -87,6 +71,12 @@ class Worlds:
         self.ranges, self.bumpers = rows(robot.layout.count), rows(len(robot.bumpers))
         self.encoders, self.odometry = rows(len(robot.drive.encoders)), rows(4)
         self.goal = rows(2)
+        self._touched = rows(len(robot.bumpers))
+        self.worlds = [
+            World(number, self._simulations, self._moved, self._touched[number])
+            for number in range(self.count)
+        ]
+        self._poses = [world.pose for world in self.worlds]
 
     def seed(self, seeds: "Sequence[Seed]", worlds: IntArray) -> None:
         """Start the sequences of episodes of worlds (n,) anew, where a seed (N) is not None."""
@@ -128,7 +118,9 @@ class Worlds:
                 task.initialize_episode(nursery)
             told = task.get_observation(nursery)
             self._simulations.take(world, nursery)
+            self._touched[world] = nursery.bumpers()
             self.ranges[world] = task.ranges
+            task.ranges = self.ranges[world]  # the row itself: the task's goes on with it
             self.bumpers[world] = told["bumpers"]
             self.encoders[world] = told["encoders"]
             self.odometry[world] = told["odometry"]
@@ -171,6 +163,7 @@ class Worlds:
         pairs = zip(chosen, encoders.tolist(), strict=True)
         odometry = np.array([tasks[world].own.reckon(own, poses[world]) for world, own in pairs])
         self.odometry[worlds] = odometry
+        self._touched[worlds] = bumpers
         if not self._plain_bumpers:
             told = zip(chosen, bumpers, strict=True)
             bumpers = np.array([tasks[world].own.tell_bumpers(own) for world, own in told])
