@@ -1,5 +1,6 @@
 """Put a robot into a room: two MJCF files and the shared scene become one compiled model."""
 
+import copy
 import warnings
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
@@ -54,7 +55,7 @@ class Scene:
     moving : Moving
         The goal and the obstacles that move; false if none does.
     near_model : mujoco.MjModel, optional
-        What is simulated of a large room, a copy each: see `Nearby`. None if `model` is.
+        Of a large room what `Nearby` changes as the robot drives, to be copied for each simulation.
     """
 
     model: mujoco.MjModel
@@ -63,6 +64,10 @@ class Scene:
     plan: FloorPlan
     moving: Moving
     near_model: mujoco.MjModel | None = None
+
+    def simulated(self) -> mujoco.MjModel:
+        """Return the model to simulate: of a large room a new copy of `near_model`."""
+        return self.model if self.near_model is None else copy.copy(self.near_model)
 
     @cached_property
     def free_space(self) -> shapely.Polygon:

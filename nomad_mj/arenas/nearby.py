@@ -36,7 +36,8 @@ def near_model(spec: mujoco.MjSpec, model: mujoco.MjModel, reach: float) -> mujo
     slots = most_near(*rectangles(model, geoms), _within(reach))
     if slots >= len(geoms):
         return None
-    for geom in [geom for geom in spec.geoms if geom.id in set(geoms.tolist())]:
+    taken = {*geoms.tolist()}
+    for geom in [geom for geom in spec.geoms if geom.id in taken]:
         spec.delete(geom)
     for slot in range(slots):
         spec.worldbody.add_geom(
@@ -87,11 +88,17 @@ class Nearby:
         self._last = (np.inf, np.inf)
         self.held = np.zeros(0, dtype=np.intp)
 
-    def update(self, x: float, y: float) -> None:
-        """See to it that all is there that a robot at x, y [m] can meet, or its rays."""
+    def update(self, x: float, y: float) -> bool:
+        """See to it that all is there that a robot at x, y [m] or its rays can meet.
+
+        Returns
+        -------
+        bool
+            Whether the model was changed.
+        """
         last_x, last_y = self._last
         if abs(x - last_x) + abs(y - last_y) < SLACK:
-            return
+            return False
         gap = np.maximum(np.abs(self._middle - (x, y)) - self._half, 0.0)
         near = np.flatnonzero(gap[:, 0] ** 2 + gap[:, 1] ** 2 <= self._within**2)
         slots, others = self._slots[: len(near)], self._slots[len(near) :]
@@ -100,6 +107,7 @@ class Nearby:
         _empty(self._model, others)
         self._last = x, y
         self.held = self._standing[near]
+        return True
 
 
 def _within(reach: float) -> float:

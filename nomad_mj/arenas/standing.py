@@ -7,7 +7,7 @@ import shapely
 
 from nomad_mj.types import FloatArray, IntArray
 
-_LATTICE = 0.5  # [m] between the places looked at
+_LATTICE = 1.0  # [m] between the places looked at
 _MOST_STEPS = 100  # of the lattice, along a side
 _TYPES = (
     mujoco.mjtGeom.mjGEOM_SPHERE,

@@ -16,32 +16,6 @@ from nomad_mj.types import Pose
 SIDE = 30.0
 
 
-@pytest.fixture(scope="module")
-def field(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a room of 30 x 30 m with a post every two metres."""
-    posts = "".join(
-        f'<geom type="cylinder" size="0.15 0.45" pos="{x} {y} 0.45"/>'
-        for x in np.arange(3.0, SIDE - 1, 2)
-        for y in np.arange(3.0, SIDE - 1, 2)
-    )
-    walls = "".join(
-        f'<geom type="box" size="{a} {b} 0.45" pos="{x} {y} 0.45"/>'
-        for x, y, a, b in (
-            (15, -0.1, 15.2, 0.1),
-            (15, SIDE + 0.1, 15.2, 0.1),
-            (-0.1, 15, 0.1, 15.2),
-            (SIDE + 0.1, 15, 0.1, 15.2),
-        )
-    )
-    path = tmp_path_factory.mktemp("field") / "field.xml"
-    path.write_text(
-        f"<mujoco><worldbody>{walls}{posts}<site name='goal' pos='28 28 0'/>"
-        "<site name='start_0' pos='2 2 0'/><camera name='top' pos='15 15 39.8' fovy='45'/>"
-        "</worldbody></mujoco>"
-    )
-    return path
-
-
 def drive(env: MotorEnvironment, ticks: int) -> list[np.ndarray]:
     seen: list[np.ndarray] = []
     for tick in range(ticks):
@@ -50,16 +24,16 @@ def drive(env: MotorEnvironment, ticks: int) -> list[np.ndarray]:
     return seen
 
 
-def load(field: Path, **options: object) -> MotorEnvironment:
-    return nomad_mj.load("motor", field, task_kwargs={"random": 3, **options})
+def load(wide_room: Path, **options: object) -> MotorEnvironment:
+    return nomad_mj.load("motor", wide_room, task_kwargs={"random": 3, **options})
 
 
-def test_readings_are_the_same_to_the_bit(field: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_readings_are_the_same_to_the_bit(wide_room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     light = InfraredEffects(("sonar",))
     runs: list[list[np.ndarray]] = []
     for fewest in (nearby.FEWEST, 10**6):
         monkeypatch.setattr(nearby, "FEWEST", fewest)
-        with load(field, infrared=light) as env:
+        with load(wide_room, infrared=light) as env:
             assert (env.physics.model.ngeom < 80) == (fewest < 180)
             assert env.task.scene.model.ngeom > 180
             seen: list[np.ndarray] = []
@@ -71,8 +45,8 @@ def test_readings_are_the_same_to_the_bit(field: Path, monkeypatch: pytest.Monke
     np.testing.assert_array_equal(runs[0], runs[1])
 
 
-def test_the_robot_runs_into_what_was_far_away(field: Path) -> None:
-    with load(field) as env:
+def test_the_robot_runs_into_what_was_far_away(wide_room: Path) -> None:
+    with load(wide_room) as env:
         env.reset(start=(2.0, 2.0, 0.0))
         for _ in range(1000):  # along a lane to its end
             env.step((0.6, 0.0, 0.0))
@@ -85,8 +59,8 @@ def test_the_robot_runs_into_what_was_far_away(field: Path) -> None:
         assert 20.5 < env.physics.pose().x < 20.65  # the post's surface is at 20.85
 
 
-def test_copies_go_on_where_they_are(field: Path) -> None:
-    with load(field) as env:
+def test_copies_go_on_where_they_are(wide_room: Path) -> None:
+    with load(wide_room) as env:
         env.reset(seed=1)
         drive(env, 20)
         others = [
@@ -106,8 +80,8 @@ def test_copies_go_on_where_they_are(field: Path) -> None:
         assert np.abs(env.physics.cone_ranges() - here).max() < 0.1  # nobody changed its room
 
 
-def test_pictures_show_all(field: Path) -> None:
-    with load(field) as env:
+def test_pictures_show_all(wide_room: Path) -> None:
+    with load(wide_room) as env:
         env.reset(start=(2.0, 2.0, 0.0))
         for place in (Pose(2.0, 2.0, 0.0), Pose(26.0, 26.0, 0.0)):
             env.physics.place(place)
