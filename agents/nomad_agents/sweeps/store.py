@@ -83,7 +83,6 @@ class Store:
         self.grid, self.rows = grid, rows
         self.sources = sources
         self._folder = folder
-        self._journal: IO[bytes] | None = None
         self._lines = 0
 
     def missing(self) -> list[SweepRun]:
@@ -99,12 +98,11 @@ class Store:
         """Keep the result of a run; OutputError if it cannot be written."""
         line = json.dumps({"cell": run.cell, SEED: run.seed, "row": row}) + "\n"
         path = self._folder / _JOURNAL
+        content = line.encode()
         try:
-            if self._journal is None:
-                self._journal = path.open("ab", buffering=0)
-            content = line.encode()
-            if self._journal.write(content) != len(content):
-                raise OSError(None, "the disk is full")
+            with path.open("ab", buffering=0) as journal:
+                if journal.write(content) != len(content):
+                    raise OSError(None, "the disk is full")
         except OSError as error:
             raise OutputError(f"cannot write {str(path)!r}: {error.strerror or error}") from None
         self.rows[run] = row
@@ -129,9 +127,6 @@ class Store:
             os.fsync(file.fileno())
 
         write_atomically(self._folder / TABLE, write)
-        if self._journal is not None:
-            self._journal.close()
-            self._journal = None
         (self._folder / _JOURNAL).unlink(missing_ok=True)
         self._lines = 0
 
