@@ -83,7 +83,7 @@ def workers(process: subprocess.Popen[str]) -> list[int]:
             pid = parents.get(pid, 0)
         return pid == process.pid
 
-    doing = re.compile(r"spawn_main|ray::do_run")
+    doing = re.compile(r"spawn_main|ray::sweep_run")
     return [pid for pid, title in titles.items() if doing.search(title) and is_below(pid)]
 
 

@@ -1,5 +1,6 @@
 """The table of an experiment: the paper's numbers, ours over all runs, and the baselines'."""
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -109,13 +110,16 @@ def _number(value: float, digits: int) -> str:
 
 def as_rich(table: TextTable) -> rich.table.Table:
     """Return a table for the terminal; an experiment's without the mean where no row has one."""
-    headings, kept = table.headings, list(range(len(table.headings)))
-    if headings == HEADINGS:
-        headings = _NARROW
+    kept = list(range(len(table.headings)))
+    headings = [re.sub(r": | (?=[\[(])", "\n", each) for each in table.headings]
+    if table.headings == HEADINGS:
+        headings = list(_NARROW)
         kept = [n for n in kept if n != _IQM or any(row[n] for row in table.rows)]
     shown = rich.table.Table(title=Text(table.title))
     for number in kept:
-        shown.add_column(Text(headings[number]), justify="right" if number else "left")
+        shown.add_column(
+            Text(headings[number]), justify="right" if number else "left", overflow="fold"
+        )
     for row in table.rows:
         shown.add_row(*(Text(row[number]) for number in kept))  # as text: brackets are no markup
     return shown

@@ -59,6 +59,11 @@ def _connected(jobs: int, address: str) -> Generator[Any, None, None]:
         shutil.rmtree(folder, ignore_errors=True) if folder else None
 
 
+def sweep_run(work: Callable[[Item], Done], item: Item) -> Done:
+    """Do a task; Ray's tools and the list of processes show it by this name."""
+    return work(item)
+
+
 def do_on_ray(
     work: Callable[[Item], Done], items: Sequence[Item], jobs: int, address: str
 ) -> Generator[tuple[Item, Done], None, None]:
@@ -88,13 +93,13 @@ def do_on_ray(
         What `work` raised, at once.
     """
     with _reached(jobs, address) as ray:
-        task = ray.remote(num_cpus=1, max_retries=1)(work)
+        task = ray.remote(num_cpus=1, max_retries=1)(sweep_run)
         todo, killed, waiting = deque(items), Counter[Item](), dict[Any, Item]()
         while todo or waiting:
             most = _AHEAD * max(int(ray.cluster_resources().get("CPU", 1)), 1)
             while todo and len(waiting) < most:
                 item = todo.popleft()
-                waiting[task.remote(item)] = item
+                waiting[task.remote(work, item)] = item
             for ready in ray.wait(list(waiting), timeout=1.0)[0]:
                 item = waiting.pop(ready)
                 try:

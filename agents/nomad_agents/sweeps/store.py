@@ -131,8 +131,8 @@ class Store:
         self._lines = 0
 
 
-def as_table(grid: Grid, rows: Mapping[SweepRun, Row]) -> pa.Table:
-    """Return the table of a sweep: a row a run, in the order of the runs.
+def as_table(grid: Grid, rows: Mapping[SweepRun, Row]) -> Any:
+    """Return the `pyarrow.Table` of a sweep: a row a run, in the order of the runs.
 
     Columns: the options, the seed, then all numbers in the order in which the first run that has
     them tells them; null where a run has none.
@@ -175,7 +175,7 @@ def read_store(folder: Path) -> Store | None:
     return store
 
 
-def _rows(table: pa.Table, grid: Grid) -> dict[SweepRun, Row]:
+def _rows(table: Any, grid: Grid) -> dict[SweepRun, Row]:
     names = [name for name, _ in grid.axes]
     found: dict[SweepRun, Row] = {}
     for held in table.to_pylist():

@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, NullLocator
+from matplotlib.transforms import ScaledTranslation
 
 from nomad_agents.experiments.figures.style import (
     BLUE,
-    FAINT,
     GOAL,
     INK,
     ORANGE,
@@ -27,8 +27,10 @@ from nomad_mj.types import FloatArray
 
 _SIGNS = ((BLUE, "o"), (ORANGE, "s"), (GOAL, "^"), (VIOLET, "D"), (RED, "v"), (INK, "P"))
 _ACROSS = 4  # panels side by side
+_LONG = 28  # letters below a panel
 _WIDE_RANGE = 20.0  # largest / least value from which an axis is logarithmic
-_BREADTH = 0.5  # of the distance between neighbours, that series take beside each other
+_BREADTH = 0.2, 0.6  # of the distance between numbers, names, that series take side by side
+_ASIDE = 5 / 72  # [in] the runs' dots stand off their mean
 _PANEL = (3.1, 2.5)  # [in]
 
 
@@ -67,8 +69,8 @@ def draw_sweep(
     path : Path
         Without a suffix: a PDF and a PNG are written.
     """
-    across = min(len(panels), _ACROSS)
-    down = math.ceil(len(panels) / across)
+    down = math.ceil(len(panels) / _ACROSS)
+    across = math.ceil(len(panels) / down)
     series = panels[0].series
     told = any(each.name for each in series)
     broad = _PANEL[0] if len(panels) > 1 else 5.2
@@ -83,7 +85,7 @@ def draw_sweep(
         for number, axes in enumerate(every[: len(panels)]):
             lowest = number + across >= len(panels)
             axes.tick_params(labelbottom=lowest)
-        figure.supxlabel(labels[0], fontsize=12, color=INK)
+            axes.set_xlabel(labels[0] if lowest else "")
         figure.supylabel(labels[1], fontsize=12, color=INK)
         if told:
             title = Line2D([], [], ls="", label=f"{labels[2]}:")
@@ -98,11 +100,12 @@ def _handle(name: str, number: int) -> Line2D:
 
 def _draw_panel(axes: Axes, panel: Panel, ticks: Sequence[float | str]) -> None:
     places, step, numeric = _places(axes, ticks)
+    breadth = _BREADTH[not numeric]
     for number, series in enumerate(panel.series):
         share = (number + 0.5) / len(panel.series) - 0.5 if len(panel.series) > 1 else 0.0
-        at = places + _BREADTH * step * share
+        at = places + breadth * step * share
         if axes.get_xscale() == "log":
-            at = places * step ** (_BREADTH * share)
+            at = places * step ** (breadth * share)
         _draw_series(axes, series, at, number, joined=numeric)
     axes.set_title(panel.title, fontsize=11)
     axes.yaxis.set_major_locator(MaxNLocator(5))
@@ -116,8 +119,11 @@ def _places(axes: Axes, ticks: Sequence[float | str]) -> tuple[FloatArray, float
         places = np.arange(len(ticks), dtype=np.float64)
         names = [tick if isinstance(tick, str) else f"{tick:g}" for tick in ticks]
         longest = max(len(name) for name in names) * len(names)
-        turned = {"rotation": 25, "ha": "right"} if longest > 28 else {}
-        axes.set_xticks(places.tolist(), names, **turned)
+        axes.set_xticks(places.tolist(), names)
+        if longest > _LONG:
+            axes.tick_params(axis="x", labelrotation=25)
+            for label in axes.get_xticklabels():
+                label.set_horizontalalignment("right")
         axes.set_xlim(-0.6, len(ticks) - 0.4)
         return places, 1.0, False
     places = np.array(numbers, dtype=np.float64)
@@ -141,8 +147,14 @@ def _draw_series(axes: Axes, series: Series, at: FloatArray, number: int, *, joi
     order = np.argsort(at)
     if joined:
         axes.plot(at[order], means[order], color=colour, lw=1.4, alpha=0.7, zorder=2)
+    aside = ScaledTranslation(-_ASIDE, 0.0, axes.figure.dpi_scale_trans)
+    beside = axes.transData + aside
     for place, runs, each in zip(at.tolist(), series.runs, over, strict=True):
-        axes.plot(np.full(len(runs), place), runs, ".", color=FAINT, ms=5, alpha=0.5, zorder=1)
+        where = np.full(len(runs), place)
+        axes.plot(
+            where, runs, ".", color=colour, ms=5, alpha=0.35, mew=0, zorder=1, transform=beside
+        )
+        axes.update_datalim(np.column_stack([where, runs]))  # moved aside, they do not count
         if np.isfinite(each.low):
             axes.plot([place, place], [each.low, each.high], color=colour, lw=2.6, zorder=3)
     axes.plot(at, means, sign, mfc="white", mec=colour, mew=1.8, ms=7, zorder=4)
