@@ -19,6 +19,7 @@ _QUIET = {
     "RAY_USAGE_STATS_ENABLED": "0",
     "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": "0",
     "RAY_enable_metrics_collection": "0",
+    "RAY_BACKEND_LOG_LEVEL": "fatal",
 }
 
 
@@ -128,7 +129,10 @@ def _reached(jobs: int, address: str) -> Generator[Any, None, None]:
             raise
         reason = " ".join(str(error).split())[:200]
         if address:
-            raise ConfigError(f"no Ray cluster at --address {address}: {reason}") from None
+            raise ConfigError(
+                f"no Ray cluster at --address {address}: {reason}; one that asks for a token needs "
+                "RAY_AUTH_MODE=token here too"
+            ) from None
         raise WorkerError(
             f"Ray does not start here: {reason}; --backend processes does without"
         ) from None
