@@ -16,6 +16,7 @@ from nomad_agents.cli.parsing import parse
 from nomad_agents.cli.record import Record
 from nomad_agents.cli.reproduce import Reproduce
 from nomad_agents.cli.room import MakeRoom
+from nomad_agents.cli.sweep import Sweep
 from nomad_agents.cli.train import Train
 from nomad_agents.cli.view import View
 from nomad_mj.errors import NomadError
@@ -27,6 +28,7 @@ COMMANDS: dict[str, type[Any]] = {
     "export": Export,
     "view": View,
     "reproduce": Reproduce,
+    "sweep": Sweep,
     "room": MakeRoom,
     "check": Check,
     "list": List,

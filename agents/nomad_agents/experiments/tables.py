@@ -1,5 +1,6 @@
 """The table of an experiment: the paper's numbers, ours over all runs, and the baselines'."""
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -70,8 +71,8 @@ def _cells(row: TableRow, results: Sequence[Result]) -> tuple[str, str, str, str
     if row.total:
         straight, planner = (_total(each) for each in baselines)
         return _total(ours), "", straight, planner
-    straight, planner = (_median(each, row.digits) for each in baselines)
-    return _median(ours, row.digits), _mean(spread(ours), row.digits), straight, planner
+    straight, planner = (quartiles(each, row.digits) for each in baselines)
+    return quartiles(ours, row.digits), mean_interval(spread(ours), row.digits), straight, planner
 
 
 def _total(values: Sequence[FloatArray]) -> str:
@@ -80,7 +81,7 @@ def _total(values: Sequence[FloatArray]) -> str:
     return f"{counted.sum():.0f} of {len(counted)}" if len(counted) else ""
 
 
-def _median(values: Sequence[FloatArray], digits: int) -> str:
+def quartiles(values: Sequence[FloatArray], digits: int) -> str:
     """Return median and quartiles, and how many runs have the number if not all have."""
     over = spread(values)
     if not over.count:
@@ -92,7 +93,8 @@ def _median(values: Sequence[FloatArray], digits: int) -> str:
     return text if over.count == runs else f"{text}, {over.count} of {runs} runs"
 
 
-def _mean(over: Spread, digits: int) -> str:
+def mean_interval(over: Spread, digits: int) -> str:
+    """Return the interquartile mean and its bounds; nothing if no run has the number."""
     if not over.count:
         return ""
     middle = _number(over.iqm, digits)
@@ -107,11 +109,17 @@ def _number(value: float, digits: int) -> str:
 
 
 def as_rich(table: TextTable) -> rich.table.Table:
-    """Return a table for the terminal; without the mean where no row has one."""
-    kept = [n for n in range(len(HEADINGS)) if n != _IQM or any(row[n] for row in table.rows)]
+    """Return a table for the terminal; an experiment's without the mean where no row has one."""
+    kept = list(range(len(table.headings)))
+    headings = [re.sub(r": | (?=[\[(])", "\n", each) for each in table.headings]
+    if table.headings == HEADINGS:
+        headings = list(_NARROW)
+        kept = [n for n in kept if n != _IQM or any(row[n] for row in table.rows)]
     shown = rich.table.Table(title=Text(table.title))
     for number in kept:
-        shown.add_column(Text(_NARROW[number]), justify="right" if number else "left")
+        shown.add_column(
+            Text(headings[number]), justify="right" if number else "left", overflow="fold"
+        )
     for row in table.rows:
         shown.add_row(*(Text(row[number]) for number in kept))  # as text: brackets are no markup
     return shown
