@@ -36,7 +36,10 @@ PUBLIC = {
         "BumperNoise Crosstalk FiringOrder Gyroscope InfraredEffects MotorConfig MotorEnvironment "
         "MotorTask NavigationPhysics OdometryNoise RangeNoise SonarEffects Start resolve_start"
     ),
-    "nomad_mj.envs": "DEFAULT_ROBOT DEFAULT_ROOM TASKS PathFinding PathFindingConfig load",
+    "nomad_mj.envs": (
+        "DEFAULT_ROBOT DEFAULT_ROOM TASKS PathFinding PathFindingConfig load percept_of"
+    ),
+    "nomad_mj.gym": "MotorEnv NavigationEnv PathFindingEnv register",
 }
 ERRORS = (
     "CheckpointError ConfigError ModelError NomadError OutputError RenderError StartError "
