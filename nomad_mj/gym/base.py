@@ -1,8 +1,7 @@
 """What both Gymnasium environments share: episodes, seeds, rewards, costs and pictures."""
 
 from abc import abstractmethod
-from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, SupportsFloat
 
@@ -72,6 +71,13 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         "rgb_array" or None.
     camera : Camera
         Draws the pictures.
+
+    Attributes
+    ----------
+    environment : PathFinding or MotorEnvironment
+        The environment below.
+    seen : mapping or None
+        Its newest observation, whatever the learner is shown of it; None before the first.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 20}  # noqa: RUF012
@@ -92,7 +98,7 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         self._observer, self._reward, self._camera = observer, reward, camera
         self.observation_space = observer.space
         self.action_space = spaces.Box(-1.0, 1.0, (actions,), np.float32)
-        self._seen: OrderedDict[str, Any] | None = None
+        self.seen: Mapping[str, Any] | None = None
         self._over = self._closed = False
         self._distance = 0.0
         self._steps = 0
@@ -140,7 +146,7 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
             if name not in _RESET_OPTIONS:
                 raise ConfigError(f"unknown reset option {name!r}; there is: start")
         step = self.environment.reset(seed, options.get("start"))
-        self._seen, self._over, self._steps = step.observation, False, 0
+        self.seen, self._over, self._steps = step.observation, False, 0
         self._totals = dict.fromkeys(_SUMMED, 0.0)
         self._distance = self.task.goal_distance(self.physics)
         if self.render_mode is not None:
@@ -162,14 +168,14 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         ValueError
             An action of another shape, or with numbers that are not finite.
         """
-        if self._seen is None or self._over:
+        if self.seen is None or self._over:
             raise ResetNeeded("the episode is over: call reset() before the next step()")
         action = np.asarray(action, dtype=np.float64)
         if action.shape != self.action_space.shape or not np.isfinite(action).all():
             (count,) = self.action_space.shape or (0,)
             raise ValueError(f"action {action}: must be {count} finite numbers in [-1, 1]")
         step = self.environment.step(self._command(np.clip(action, -1.0, 1.0)))
-        self._seen, self._over = step.observation, step.last()
+        self.seen, self._over = step.observation, step.last()
         self._steps += 1
         before, self._distance = self._distance, self.task.goal_distance(self.physics)
         if self.render_mode is not None:
@@ -212,16 +218,16 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         if self.render_mode is None:
             gymnasium.logger.warn("no render_mode was given to make(): render() draws nothing")
             return None
-        if self._seen is None:
+        if self.seen is None:
             raise ResetNeeded("there is nothing to draw before the first reset()")
         fields = (("step", str(self._steps)), ("cost", f"{self._totals['cost']:g}"))
         elapsed = 1.0 / self.metadata["render_fps"]
-        return self._camera.picture(self.physics, self._seen, elapsed, fields)
+        return self._camera.picture(self.physics, self.seen, elapsed, fields)
 
     def close(self) -> None:
         """Free the simulation and its OpenGL contexts; more than once does no harm."""
         if not self._closed:
-            self._closed, self._seen = True, None
+            self._closed, self.seen = True, None
             self._camera.close()
             self.environment.close()
 

@@ -10,6 +10,7 @@ from nomad_agents.cli.check import Check
 from nomad_agents.cli.common import fail
 from nomad_agents.cli.demo import Demo
 from nomad_agents.cli.evaluate import Evaluate
+from nomad_agents.cli.export import Export
 from nomad_agents.cli.listing import List
 from nomad_agents.cli.parsing import parse
 from nomad_agents.cli.record import Record
@@ -23,6 +24,7 @@ COMMANDS: dict[str, type[Any]] = {
     "train": Train,
     "evaluate": Evaluate,
     "record": Record,
+    "export": Export,
     "view": View,
     "reproduce": Reproduce,
     "room": MakeRoom,
