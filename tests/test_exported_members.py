@@ -12,8 +12,8 @@ PUBLIC = {
         "RangeNoise SonarEffects Walkers list_robots list_rooms load"
     ),
     "nomad_mj.perception": (
-        "GridSpec Percept SituationSpec attraction_force cell_centres certainty_grid code_grid "
-        "code_signal perceive pool"
+        "OBSERVATIONS GridSpec Observation Percept SituationSpec attraction_force cell_centres "
+        "certainty_grid code_grid code_percept code_ranges code_signal coded_size perceive pool"
     ),
     "nomad_mj.motion": (
         "SAFE_CLEARANCE ActionSpec CarDrive Drive MotionConfig Move Outcome StraightMove "
