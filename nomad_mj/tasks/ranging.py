@@ -1,12 +1,13 @@
 """Range readings: from how far the obstacles are to what the sensors report."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from nomad_mj.robots import RobotDescription
-from nomad_mj.tasks.noise import RangeNoise, RangeNoiseStream
-from nomad_mj.tasks.physics import NavigationPhysics
+from nomad_mj.robots import RayIndex, RobotDescription
+from nomad_mj.tasks.noise import RangeNoise, RangeNoiseStream, RangeNoiseStreams
 from nomad_mj.tasks.sonar import SonarEffects, Sonars
-from nomad_mj.types import FloatArray
+from nomad_mj.types import FloatArray, IntArray
 
 
 class Ranging:
@@ -42,12 +43,57 @@ class Ranging:
         if self._sonars is not None:
             self._sonars.start(np.random.default_rng(crosstalk), np.random.default_rng(dropout))
 
-    def read(self, physics: NavigationPhysics) -> FloatArray:
-        """Return the readings of this control step, (C,) [m]."""
-        rays, sonars = self._rays, self._sonars
-        ranges = physics.cone_ranges()
-        if sonars is not None:
-            ranges = sonars.hear(ranges)
-        ranges = ranges * self._noise.factors()
-        np.minimum(np.maximum(ranges, rays.minimum, out=ranges), rays.maximum, out=ranges)
-        return ranges if sonars is None else sonars.tell(ranges)
+    def read(self, cones: FloatArray) -> FloatArray:
+        """Return the readings of this control step, given each cone's shortest ray, (C,) [m]."""
+        return self._tell(_within(self._hear(cones) * self._noise.factors(), self._rays))
+
+    def _hear(self, cones: FloatArray) -> FloatArray:
+        return cones if self._sonars is None else self._sonars.hear(cones)
+
+    def _tell(self, ranges: FloatArray) -> FloatArray:
+        return ranges if self._sonars is None else self._sonars.tell(ranges)
+
+
+class RangingOfMany:
+    """The range sensors of N robots under the same options, read at once.
+
+    Parameters
+    ----------
+    robots : sequence of Ranging, length N
+        Each by itself; their streams are drawn from here once `go_on` has been called.
+    """
+
+    def __init__(self, robots: Sequence[Ranging]) -> None:
+        self._robots = robots
+        self._rays = robots[0]._rays
+        self._affected = robots[0]._sonars is not None
+        self._noise = RangeNoiseStreams(len(robots), robots[0]._count)
+
+    def go_on(self, number: int) -> None:
+        """Take over the episode of a robot, from where it is by itself."""
+        self._noise.go_on(number, self._robots[number]._noise)
+
+    def read(self, numbers: IntArray, cones: FloatArray) -> FloatArray:
+        """Return what `Ranging.read` does for each of some robots (n,), (n, C) [m].
+
+        Parameters
+        ----------
+        numbers : array (n,)
+            Which robots.
+        cones : array (n, C)
+            Each cone's shortest ray [m].
+        """
+        robots = [self._robots[number] for number in numbers.tolist()] if self._affected else []
+        if robots:
+            pairs = zip(robots, cones, strict=True)
+            cones = np.array([robot._hear(own) for robot, own in pairs])
+        ranges = _within(cones * self._noise.factors(numbers), self._rays)
+        if robots:
+            pairs = zip(robots, ranges, strict=True)
+            ranges = np.array([robot._tell(own) for robot, own in pairs])
+        return ranges
+
+
+def _within(ranges: FloatArray, rays: RayIndex) -> FloatArray:
+    """Cut readings (..., C) to what the rings can tell, in place."""
+    return np.minimum(np.maximum(ranges, rays.minimum, out=ranges), rays.maximum, out=ranges)
