@@ -12,8 +12,8 @@ PUBLIC = {
         "RangeNoise SonarEffects Walkers list_robots list_rooms load"
     ),
     "nomad_mj.perception": (
-        "GridSpec Percept SituationSpec attraction_force cell_centres certainty_grid code_grid "
-        "code_signal perceive pool"
+        "GridSpec OBSERVATIONS Observation Percept SituationSpec attraction_force cell_centres "
+        "certainty_grid code_grid code_percept code_ranges code_signal coded_size perceive pool"
     ),
     "nomad_mj.motion": (
         "SAFE_CLEARANCE ActionSpec CarDrive Drive MotionConfig Move Outcome StraightMove "
@@ -36,7 +36,9 @@ PUBLIC = {
         "BumperNoise Crosstalk FiringOrder Gyroscope InfraredEffects MotorConfig MotorEnvironment "
         "MotorTask NavigationPhysics OdometryNoise RangeNoise SonarEffects Start resolve_start"
     ),
-    "nomad_mj.envs": "DEFAULT_ROBOT DEFAULT_ROOM TASKS PathFinding PathFindingConfig load",
+    "nomad_mj.envs": (
+        "DEFAULT_ROBOT DEFAULT_ROOM TASKS PathFinding PathFindingConfig load percept_of"
+    ),
 }
 ERRORS = (
     "CheckpointError ConfigError ModelError NomadError OutputError RenderError StartError "

@@ -75,7 +75,7 @@ class Train(TaskOptions):
     def _train_deep(self) -> int:
         screen, settings = console(json_wanted=self.json), LEARNERS[self.agent]()
         require_budget(self.decisions, 0, self.seed)
-        require_extra(*(["tensorboard"] if self.tensorboard else []))
+        require_extra(curves=bool(self.tensorboard))
         with self.path_finding() as test, interruptible():
             name = f"{test.scene.arena.name}_{self.agent}_{self.observation}_{self.seed}"
             path = output_file(self.out, name, ".npz")
@@ -91,7 +91,7 @@ class Train(TaskOptions):
                     path,
                     screen,
                     self.conditions(),
-                    Path(self.tensorboard) if self.tensorboard else None,
+                    Path(self.tensorboard) / name if self.tensorboard else None,
                 )
         told = f"solved {report['solved']} of {report['starts']} starts"
         screen.print(f"{told} after {report['decisions']} decisions: {path}", soft_wrap=True)
