@@ -42,7 +42,7 @@ class Train(TaskOptions):
     """Parameters: faithful (the paper's) or tuned (better ones found since)."""
     observation: str = "situation"
     """What a deep learner is shown: situation (26 numbers) or ranges (all range readings)."""
-    decisions: int = 20_000
+    decisions: int = 10_000
     """A deep learner learns from so many decisions."""
     tensorboard: str = ""
     """Folder for the curves of the training, for TensorBoard."""
