@@ -42,7 +42,7 @@ class Train(TaskOptions):
     """Parameters: faithful (the paper's) or tuned (better ones found since)."""
     observation: str = "situation"
     """What a deep learner is shown: situation (26 numbers) or ranges (all range readings)."""
-    decisions: int = 20_000
+    decisions: int = 10_000
     """A deep learner learns from so many decisions."""
     tensorboard: str = ""
     """Folder for the curves of the training, for TensorBoard."""
@@ -75,7 +75,7 @@ class Train(TaskOptions):
     def _train_deep(self) -> int:
         screen, settings = console(json_wanted=self.json), LEARNERS[self.agent]()
         require_budget(self.decisions, 0, self.seed)
-        require_extra(*(["tensorboard"] if self.tensorboard else []))
+        require_extra(curves=bool(self.tensorboard))
         with self.path_finding() as test, interruptible():
             name = f"{test.scene.arena.name}_{self.agent}_{self.observation}_{self.seed}"
             path = output_file(self.out, name, ".npz")
@@ -91,7 +91,7 @@ class Train(TaskOptions):
                     path,
                     screen,
                     self.conditions(),
-                    Path(self.tensorboard) if self.tensorboard else None,
+                    Path(self.tensorboard) / name if self.tensorboard else None,
                 )
         told = f"solved {report['solved']} of {report['starts']} starts"
         screen.print(f"{told} after {report['decisions']} decisions: {path}", soft_wrap=True)
