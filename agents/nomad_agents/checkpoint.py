@@ -9,10 +9,9 @@ import tempfile
 from collections.abc import Callable, Mapping
 from importlib.metadata import version
 from pathlib import Path
-from typing import IO, Any, NamedTuple, TypeVar
+from typing import IO, Any, NamedTuple, TypeVar, cast
 
 import cattrs
-import mujoco
 import numpy as np
 
 from nomad_agents.reactive_planner import ReactivePlanner, ReactivePlannerConfig
@@ -93,23 +92,29 @@ def save_checkpoint(
         "robot": robot,
         "training": training,
         "conditions": dict(conditions or {}),
-        "packages": {
-            "nomad-mj": version("nomad-mj"),
-            "mujoco": mujoco.__version__,
-            "numpy": np.__version__,
-        },
+        "packages": packages(),
     }
-    arrays: dict[str, Any] = {"metadata": np.array(json.dumps(metadata)), **agent.network.arrays()}
-    write_atomically(path, lambda file: np.savez(file, **arrays))
+    write_npz(path, metadata, agent.network.arrays())
 
 
-def load_checkpoint(path: Path) -> Checkpoint:
-    """Return what a checkpoint file holds.
+def packages(*more: str) -> dict[str, str]:
+    """Return the versions of what a file is written with, and of `more` packages."""
+    return {name: version(name) for name in ("nomad-mj", "mujoco", "numpy", *more)}
+
+
+def write_npz(path: Path, metadata: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
+    """Write arrays, and metadata as JSON beside them; errors as of `write_atomically`."""
+    named: dict[str, Any] = {"metadata": np.array(json.dumps(metadata)), **arrays}
+    write_atomically(path, lambda file: np.savez(file, **named))
+
+
+def read_npz(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the metadata and the arrays of a file of an agent, of whatever kind.
 
     Raises
     ------
     CheckpointError
-        The file is missing, corrupt, no checkpoint, or of an unknown version.
+        The file is missing or corrupt, or has no metadata.
     """
     try:
         # Opened here, since numpy leaves a file open that is no zip inside.
@@ -123,14 +128,38 @@ def load_checkpoint(path: Path) -> Checkpoint:
             f"checkpoint {str(path)!r} cannot be read: {error.strerror or error}"
         ) from None
     except Exception as error:  # nobody lists what zip, npy and JSON raise at damaged bytes
-        raise _corrupt(path, str(error) or type(error).__name__) from None
-    if not isinstance(metadata, dict) or metadata.get("format") != FORMAT:
-        raise CheckpointError(f"{str(path)!r} is no checkpoint of {FORMAT!r}")
-    if metadata.get("version") != VERSION:
+        raise corrupt(path, str(error) or type(error).__name__) from None
+    if not isinstance(metadata, dict):
+        raise CheckpointError(f"{str(path)!r} is no checkpoint")
+    return cast(dict[str, Any], metadata), arrays
+
+
+def require_format(path: Path, metadata: Mapping[str, Any], format_id: str, number: int) -> None:
+    """Raise CheckpointError unless a file is of this format and version."""
+    if metadata.get("format") != format_id:
+        raise CheckpointError(f"{str(path)!r} is no checkpoint of {format_id!r}")
+    if metadata.get("version") != number:
         raise CheckpointError(
             f"checkpoint {str(path)!r} is of version {metadata.get('version')}; this program reads "
-            f"version {VERSION}: train again, or use the nomad-mj that wrote it"
+            f"version {number}: train again, or use the nomad-mj that wrote it"
         )
+
+
+def load_checkpoint(path: Path) -> Checkpoint:
+    """Return what a checkpoint file of the reactive planner holds.
+
+    Raises
+    ------
+    CheckpointError
+        The file is missing, corrupt, no checkpoint, or of an unknown version.
+    """
+    metadata, arrays = read_npz(path)
+    return checkpoint_of(path, metadata, arrays)
+
+
+def checkpoint_of(path: Path, metadata: Mapping[str, Any], arrays: dict[str, Any]) -> Checkpoint:
+    """Return what `read_npz` has read from `path`; errors as of `load_checkpoint`."""
+    require_format(path, metadata, FORMAT, VERSION)
     try:
         config = structure(metadata["config"], ReactivePlannerConfig)
         layout = structure(metadata["layout"], SensorLayout)
@@ -142,7 +171,7 @@ def load_checkpoint(path: Path) -> Checkpoint:
         names = str(metadata["room"]), str(metadata["robot"])
         return Checkpoint(agent, layout, *names, training, conditions)
     except Exception as error:  # nor what numbers of any size do to a configuration
-        raise _corrupt(path, str(error)) from None
+        raise corrupt(path, str(error)) from None
 
 
 def structure(data: object, kind: type[_T]) -> _T:
@@ -153,6 +182,7 @@ def structure(data: object, kind: type[_T]) -> _T:
     return made
 
 
-def _corrupt(path: Path, reason: str) -> CheckpointError:
+def corrupt(path: Path, reason: str) -> CheckpointError:
+    """Return the error of a file that does not hold what it should."""
     reason = " ".join(reason.split())
     return CheckpointError(f"checkpoint {str(path)!r} is corrupt or no checkpoint: {reason}")

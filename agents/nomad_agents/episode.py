@@ -1,17 +1,16 @@
 """One episode: an agent finds its way, or does not, and what it took."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import NamedTuple
 
 import dm_env
 import numpy as np
 
 from nomad_agents.agent import Agent, Decision
-from nomad_mj.envs import PathFinding
+from nomad_mj.envs import PathFinding, percept_of
 from nomad_mj.motion import Outcome
-from nomad_mj.perception import Percept, SituationSpec, perceive
+from nomad_mj.perception import Percept
 from nomad_mj.tasks import Start
-from nomad_mj.types import FloatArray, SensorLayout
 
 
 class Episode(NamedTuple):
@@ -58,14 +57,6 @@ class Turn(NamedTuple):
 
 
 Watcher = Callable[[Turn], None]
-
-
-def percept_of(
-    observation: Mapping[str, FloatArray], layout: SensorLayout, spec: SituationSpec
-) -> Percept:
-    """Return the percept of an observation of path finding or of the motor task."""
-    ranges = np.concatenate([observation[ring.name] for ring in layout.rings])
-    return perceive(ranges, observation["odometry"][3], observation["goal"], layout, spec)
 
 
 def run_episode(

@@ -4,9 +4,11 @@ from pathlib import Path
 
 from nomad_agents.agent import Agent
 from nomad_agents.baselines import Planner, Straight
-from nomad_agents.checkpoint import load_checkpoint
+from nomad_agents.checkpoint import checkpoint_of, read_npz
+from nomad_agents.deep import LEARNERS
+from nomad_agents.deep.file import FORMAT, deep_of
 from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner, ReactivePlannerConfig
-from nomad_mj.errors import CheckpointError, UnknownNameError
+from nomad_mj.errors import CheckpointError, ConfigError, UnknownNameError
 from nomad_mj.types import SensorLayout
 
 AGENTS: dict[str, type[ReactivePlanner] | type[Planner] | type[Straight]] = {
@@ -35,11 +37,18 @@ def find_agent(name_or_path: str, layout: SensorLayout, config: ReactivePlannerC
     ------
     UnknownNameError
         Neither an agent nor a file that exists.
+    ConfigError
+        A deep learner by name: it knows nothing before it is trained.
     CheckpointError
         A file that is no checkpoint, or one for other sensors.
     """
     if name_or_path in AGENTS:
         return make_agent(name_or_path, layout, config)
+    if name_or_path in LEARNERS:
+        raise ConfigError(
+            f"agent {name_or_path!r} cannot act before it is trained; give the .npz file that "
+            f"nomad-mj train --agent {name_or_path} writes"
+        )
     path = Path(name_or_path)
     try:
         path = path.expanduser()
@@ -48,13 +57,21 @@ def find_agent(name_or_path: str, layout: SensorLayout, config: ReactivePlannerC
         exists = False
     if path.suffix != ".npz" and not exists:
         raise UnknownNameError("agent", name_or_path, [*AGENTS, "CHECKPOINT.npz"])
-    checkpoint = load_checkpoint(path)
-    if not checkpoint.layout.matches(layout):
+    agent = load_agent(path)
+    if not agent.layout.matches(layout):
         raise CheckpointError(
             f"checkpoint {name_or_path!r} is for other sensors: "
-            f"{describe_layout(checkpoint.layout)}; this robot has {describe_layout(layout)}"
+            f"{describe_layout(agent.layout)}; this robot has {describe_layout(layout)}"
         )
-    return checkpoint.agent
+    return agent
+
+
+def load_agent(path: Path) -> Agent:
+    """Return the agent that a file holds, of whatever kind; errors as of `load_checkpoint`."""
+    metadata, arrays = read_npz(path)
+    if metadata.get("format") == FORMAT:
+        return deep_of(path, metadata, arrays).agent
+    return checkpoint_of(path, metadata, arrays).agent
 
 
 def describe_layout(layout: SensorLayout) -> str:

@@ -2,5 +2,14 @@
 
 from nomad_mj.envs.load import DEFAULT_ROBOT, DEFAULT_ROOM, TASKS, load
 from nomad_mj.envs.path_finding import PathFinding, PathFindingConfig
+from nomad_mj.envs.percept import percept_of
 
-__all__ = ["DEFAULT_ROBOT", "DEFAULT_ROOM", "TASKS", "PathFinding", "PathFindingConfig", "load"]
+__all__ = [
+    "DEFAULT_ROBOT",
+    "DEFAULT_ROOM",
+    "TASKS",
+    "PathFinding",
+    "PathFindingConfig",
+    "load",
+    "percept_of",
+]

@@ -180,7 +180,7 @@ def test_evaluate_writes_a_row_an_episode(run: Run, tmp_path: Path) -> None:
 
 def test_list_names_everything(run: Run) -> None:
     found = json.loads(run("list", "--json").out)
-    assert list(found) == ["rooms", "robots", "tasks", "agents", "configs"]
+    assert list(found) == ["rooms", "robots", "tasks", "agents", "learners", "configs"]
     assert "paper_room" in found["rooms"] and found["configs"] == ["faithful", "tuned"]
     assert all(name in run("list").out for names in found.values() for name in names)
 

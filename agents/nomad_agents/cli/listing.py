@@ -7,14 +7,15 @@ from rich.table import Table
 
 import nomad_mj
 from nomad_agents.cli.common import print_json
-from nomad_agents.reactive_planner import CONFIGS
+from nomad_agents.deep import LEARNERS
+from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner
 from nomad_agents.registry import AGENTS
 from nomad_mj.envs import TASKS
 
 
 @dataclass(frozen=True)
 class List:
-    """List the rooms, robots, tasks, agents and configurations that there are."""
+    """List the rooms, robots, tasks, agents, learners and configurations that there are."""
 
     json: bool = False
     """Print one line of JSON instead of a table."""
@@ -26,6 +27,7 @@ class List:
             "robots": [*nomad_mj.list_robots()],
             "tasks": [*TASKS],
             "agents": [*AGENTS],
+            "learners": [ReactivePlanner.name, *LEARNERS],
             "configs": [*CONFIGS],
         }
         if self.json:

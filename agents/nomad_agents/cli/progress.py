@@ -1,5 +1,6 @@
 """Progress bars."""
 
+from collections import deque
 from collections.abc import Iterable
 from types import TracebackType
 
@@ -15,8 +16,11 @@ from rich.progress import (
 from rich.text import Text
 from typing_extensions import Self
 
+from nomad_agents.deep.training import DeepTraining
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.training import Training
+
+RECENT = 50  # episodes
 
 
 class _CountedProgress(Progress):
@@ -75,6 +79,52 @@ class TrainingProgress:
             completed=training.next_start or self._starts,
             solved=f"solved {training.solved} of {training.tested}" if training.tested else "",
         )
+
+
+class DeepProgress:
+    """A bar over the decisions of a deep training, with its counts."""
+
+    def __init__(self, screen: Console, decisions: int) -> None:
+        self._progress = _CountedProgress(
+            TextColumn("{task.description}"),
+            BarColumn(bar_width=30),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(),
+            console=screen,
+            speed_estimate_period=60,
+        )
+        self._task = self._progress.add_task("decisions", total=decisions)
+        self._episodes = 0
+        self._ended = deque([0], maxlen=RECENT + 1)  # goals reached after each episode
+
+    def __enter__(self) -> Self:
+        self._progress.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._progress.stop()
+
+    def show(self, training: DeepTraining) -> None:
+        """Show how far the training is."""
+        if training.episodes > self._episodes:
+            self._episodes = training.episodes
+            self._ended.append(training.reached)
+        recent = len(self._ended) - 1
+        self._progress.counts = ", ".join(
+            [
+                f"goal reached in {self._ended[-1] - self._ended[0]} of the last {recent} episodes",
+                f"{training.virtual_collisions} virtual collisions",
+                f"{training.sim_s / 3600:.1f} h simulated",
+            ]
+        )
+        self._progress.update(self._task, completed=training.decisions)
 
 
 def trial_progress(screen: Console) -> Progress:

@@ -1,6 +1,7 @@
 """``nomad-mj train``."""
 
-from dataclasses import asdict, dataclass
+from contextlib import closing
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -10,21 +11,39 @@ from nomad_agents.checkpoint import load_checkpoint, save_checkpoint, structure
 from nomad_agents.cli.common import console, interruptible, output_file, print_json
 from nomad_agents.cli.progress import TrainingProgress
 from nomad_agents.cli.task_options import TaskOptions
+from nomad_agents.cli.train_deep import run_deep_training
+from nomad_agents.deep import LEARNERS
+from nomad_agents.deep.environment import make_env
+from nomad_agents.deep.extra import require_extra
 from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner
 from nomad_agents.registry import find_agent, find_config
 from nomad_agents.training import Training, TrainingConfig, train, training_report
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import CheckpointError, ConfigError
 
+_OF_REACTIVE_PLANNER = ("config", "max_passes", "max_decisions", "resume")
+_OF_DEEP_LEARNERS = ("observation", "decisions", "tensorboard")
+
 
 @dataclass(frozen=True)
 class Train(TaskOptions):
-    """Train the reactive planner until a greedy test solves every start of the room."""
+    """Train an agent.
+
+    The reactive planner learns until a greedy test solves every start of the room; sac, td3 and ppo
+    learn from so many decisions, and cannot resume: a training of theirs starts anew.
+    """
 
     agent: str = "reactive_planner"
-    """Name of an agent that learns, or a checkpoint, .npz, to go on learning with what it knows."""
+    """reactive_planner, or a checkpoint of it, .npz, to go on learning with what it knows; or a
+    deep learner: sac, td3 or ppo."""
     config: str = "faithful"
     """Parameters: faithful (the paper's) or tuned (better ones found since)."""
+    observation: str = "situation"
+    """What a deep learner is shown: situation (26 numbers) or ranges (all range readings)."""
+    decisions: int = 20_000
+    """A deep learner learns from so many decisions."""
+    tensorboard: str = ""
+    """Folder for a deep learner's curves, for TensorBoard."""
     seed: int = 0
     """Of all randomness."""
     max_passes: int = 100
@@ -40,6 +59,49 @@ class Train(TaskOptions):
 
     def run(self) -> int:
         """Train; return the exit code."""
+        self._refuse(_OF_REACTIVE_PLANNER if self.agent in LEARNERS else _OF_DEEP_LEARNERS)
+        return self._train_deep() if self.agent in LEARNERS else self._train_reactive_planner()
+
+    def _refuse(self, names: tuple[str, ...]) -> None:
+        """Raise ConfigError if one of the options that the agent does not have is given."""
+        for each in fields(self):
+            if each.name in names and getattr(self, each.name) != each.default:
+                raise ConfigError(
+                    f"--{each.name.replace('_', '-')} is no option of agent {self.agent!r}"
+                    + (
+                        ": an interrupted training of it starts anew"
+                        if each.name == "resume"
+                        else ""
+                    )
+                )
+
+    def _train_deep(self) -> int:
+        screen, settings = console(json_wanted=self.json), LEARNERS[self.agent]()
+        require_extra(*(["tensorboard"] if self.tensorboard else []))
+        with self.path_finding() as test, interruptible():
+            name = f"{test.scene.arena.name}_{self.agent}_{self.observation}_{self.seed}"
+            path = output_file(self.out, name, ".npz")
+            task, goal = self._task_kwargs(), self._goal_place()
+            made = make_env(settings, self.observation, self.room, self.robot, task, goal)
+            with closing(made) as env:
+                report = run_deep_training(
+                    env,
+                    test,
+                    settings,
+                    self.seed,
+                    self.decisions,
+                    path,
+                    screen,
+                    self.conditions(),
+                    Path(self.tensorboard) if self.tensorboard else None,
+                )
+        told = f"solved {report['solved']} of {report['starts']} starts"
+        screen.print(f"{told} after {report['decisions']} decisions: {path}", soft_wrap=True)
+        if self.json:
+            print_json(report)
+        return 0
+
+    def _train_reactive_planner(self) -> int:
         settings = TrainingConfig(
             self.seed, max_passes=self.max_passes, max_decisions=self.max_decisions
         )

@@ -9,10 +9,9 @@ from typing import TypedDict
 import numpy as np
 
 from nomad_agents.agent import Agent
-from nomad_agents.episode import percept_of
 from nomad_agents.evaluation import Trial
 from nomad_agents.training import stream
-from nomad_mj.envs import PathFinding
+from nomad_mj.envs import PathFinding, percept_of
 from nomad_mj.motion import displacement
 from nomad_mj.types import FloatArray
 

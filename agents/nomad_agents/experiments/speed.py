@@ -7,9 +7,9 @@ import mujoco
 import numpy as np
 
 import nomad_mj
-from nomad_agents.episode import percept_of
 from nomad_agents.reactive_planner import FAITHFUL, ReactivePlanner, plan
 from nomad_agents.training import Training, TrainingConfig, train
+from nomad_mj.envs import percept_of
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.types import FloatArray
 

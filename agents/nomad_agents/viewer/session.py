@@ -9,10 +9,9 @@ import numpy as np
 from dm_control.rl.control import PhysicsError
 
 from nomad_agents.agent import Agent
-from nomad_agents.episode import percept_of
 from nomad_agents.viewer.controls import DRIVING, Controls
 from nomad_agents.viewer.teleoperation import Teleoperator, Wish
-from nomad_mj.envs import PathFinding
+from nomad_mj.envs import PathFinding, percept_of
 from nomad_mj.errors import StartError
 from nomad_mj.motion import Outcome, displacement
 from nomad_mj.perception import Percept, SituationSpec

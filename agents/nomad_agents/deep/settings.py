@@ -1,0 +1,111 @@
+"""What the deep learners are trained with, found by a small search (docs/deep.md)."""
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal, TypeAlias
+
+Algorithm = Literal["sac", "td3", "ppo"]
+
+
+@dataclass(frozen=True)
+class _OffPolicy:
+    """What SAC and TD3 have in common.
+
+    Attributes
+    ----------
+    hidden : tuple of int
+        Units of the hidden layers of every network.
+    gamma : float
+        Discount of a decision.
+    learning_rate : float
+        Of Adam, for all networks.
+    batch_size : int
+        Decisions that an update learns from.
+    buffer_size : int
+        Decisions that are remembered.
+    learning_starts : int
+        Decisions taken by chance before the first update.
+    gradient_steps : int
+        Updates after each decision.
+    tau : float
+        Share by which the target networks follow at each update.
+    goal_bonus : float
+        Reward for reaching the goal, beside z.
+    episode_decisions : int
+        An episode of training is given up after so many decisions.
+    """
+
+    hidden: tuple[int, ...] = (128, 128)
+    gamma: float = 0.95
+    learning_rate: float = 1e-3
+    batch_size: int = 256
+    buffer_size: int = 100_000
+    learning_starts: int = 300
+    gradient_steps: int = 1
+    tau: float = 0.005
+    goal_bonus: float = 2.0
+    episode_decisions: int = 50
+
+
+@dataclass(frozen=True)
+class SacSettings(_OffPolicy):
+    """Soft actor-critic (Haarnoja et al. 2018), with the entropy coefficient tuned by itself.
+
+    Attributes
+    ----------
+    entropy : float
+        Entropy coefficient to begin with.
+    """
+
+    algorithm: ClassVar[Algorithm] = "sac"
+    entropy: float = 0.05
+
+
+@dataclass(frozen=True)
+class Td3Settings(_OffPolicy):
+    """Twin delayed DDPG (Fujimoto et al. 2018).
+
+    Attributes
+    ----------
+    exploration : float
+        Standard deviation of the normal noise on actions while learning.
+    """
+
+    algorithm: ClassVar[Algorithm] = "td3"
+    exploration: float = 0.1
+
+
+@dataclass(frozen=True)
+class PpoSettings:
+    """Proximal policy optimisation (Schulman et al. 2017).
+
+    Attributes
+    ----------
+    hidden, gamma, learning_rate, batch_size, goal_bonus, episode_decisions
+        As of SAC and TD3.
+    rollout : int
+        Decisions between two rounds of updates.
+    epochs : int
+        Passes over a rollout in a round of updates.
+    gae_lambda : float
+        Of generalised advantage estimation.
+    entropy : float
+        Weight of the entropy bonus.
+    """
+
+    algorithm: ClassVar[Algorithm] = "ppo"
+    hidden: tuple[int, ...] = (128, 128)
+    gamma: float = 0.97
+    learning_rate: float = 3e-4
+    batch_size: int = 64
+    rollout: int = 512
+    epochs: int = 10
+    gae_lambda: float = 0.95
+    entropy: float = 0.0
+    goal_bonus: float = 2.0
+    episode_decisions: int = 50
+
+
+DeepSettings: TypeAlias = SacSettings | Td3Settings | PpoSettings
+LEARNERS: dict[str, type[DeepSettings]] = {
+    made.algorithm: made for made in (SacSettings, Td3Settings, PpoSettings)
+}

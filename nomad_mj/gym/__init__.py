@@ -1,0 +1,9 @@
+"""Gymnasium's environments; importing this registers them, see `registration`."""
+
+from nomad_mj.gym.motor import MotorEnv
+from nomad_mj.gym.path_finding import PathFindingEnv
+from nomad_mj.gym.registration import register
+
+register()
+
+__all__ = ["MotorEnv", "PathFindingEnv", "register"]

@@ -1,0 +1,51 @@
+"""Options as plain data, as a JSON file or a saved environment specification has them."""
+
+from collections.abc import Mapping
+from dataclasses import is_dataclass
+from typing import Any, TypeVar, cast, get_args, get_type_hints
+
+import cattrs
+
+from nomad_mj.envs import PathFindingConfig
+from nomad_mj.errors import ConfigError
+from nomad_mj.movers import MovingGoal, MovingObstacles
+from nomad_mj.tasks import MotorConfig
+
+_T = TypeVar("_T")
+_TYPES: dict[str, Any] = {
+    "moving_goal": MovingGoal,
+    "moving_obstacles": MovingObstacles,
+    **get_type_hints(MotorConfig),
+    **get_type_hints(PathFindingConfig),
+}
+_CONVERTER = cattrs.Converter(forbid_extra_keys=True)
+
+
+def structure(what: str, given: _T | Mapping[str, Any], cls: type[_T]) -> _T:
+    """Return an option of a class, made from its fields if it is given as a mapping.
+
+    Raises
+    ------
+    ConfigError
+        Fields that the class does not have, or values that it does not take.
+    """
+    if not isinstance(given, Mapping):
+        return given
+    try:
+        return _CONVERTER.structure(cast(Mapping[str, Any], given), cls)
+    except ConfigError:
+        raise
+    except Exception as error:
+        reason = "; ".join(cattrs.transform_error(error, path=what))
+        raise ConfigError(f"{what}: is no {cls.__name__}: {' '.join(reason.split())}") from None
+
+
+def task_options(given: Mapping[str, Any] | None) -> dict[str, Any]:
+    """Return the ``task_kwargs`` of `nomad_mj.load`, those given as mappings made what they are."""
+    options = dict(given or {})
+    for name, value in options.items():
+        kind = _TYPES.get(name)
+        for cls in (kind, *get_args(kind)):
+            if isinstance(cls, type) and is_dataclass(cls):
+                options[name] = structure(f"task option {name!r}", value, cls)
+    return options
