@@ -115,7 +115,9 @@ def test_a_foreign_environment_is_refused() -> None:
     foreign = gymnasium.make("Pendulum-v1")
     with pytest.raises(ConfigError, match=r"Pendulum-v1: deep learners .* 'nomad_mj/PathFinding"):
         train_deep(small("sac"), foreign, 0, 10)
-    with pytest.raises(ConfigError, match=r"observation 'dict': must be one of: situation, ranges$"):
+    with pytest.raises(
+        ConfigError, match=r"observation 'dict': must be one of: situation, ranges$"
+    ):
         make_env(small("sac"), "dict")
 
 

@@ -42,7 +42,9 @@ from nomad_mj.types import FloatArray, SensorLayout
 
 _NEAR = 1e-6  # [m] from the goal: there is no direction to it
 _BLOCKED = 0.02  # [m] no move is worth making that is shorter
-_FAN: FloatArray = np.deg2rad([s * d for d in range(0, 181, 5) for s in ((1, -1) if d % 180 else (1,))])
+_FAN: FloatArray = np.deg2rad(
+    [s * d for d in range(0, 181, 5) for s in ((1, -1) if d % 180 else (1,))]
+)
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,8 @@ class Checks:
 
     Attributes
     ----------
+    whole : bool
+        As given.
     curve : list of dict
         One entry a check: ``decisions`` and ``sim_s`` of learning so far, what learning has cost
         so far, and ``success_rate``, ``strict_success_rate`` and ``spl``; the same with
@@ -49,7 +51,7 @@ class Checks:
         self._starts = draw_starts(env, starts, CHECK_SEED)
         self._seed = CHECK_SEED + seed
         self._decisions = decisions
-        self._whole = whole
+        self.whole = whole
         self._next = 0.0
         self._mastered: set[str] = set()
         self.curve: list[Row] = []
@@ -70,7 +72,7 @@ class Checks:
         """
         entry: Row = dict(learning)
         for kind, each in zip(_KINDS, (agent, unaided), strict=True):
-            if each is None or (kind in self._mastered and not self._whole):
+            if each is None or (kind in self._mastered and not self.whole):
                 continue
             trials = evaluate(self._env, each, self._starts, self._seed, self._decisions)
             summary = summarise(self._env, trials)
@@ -80,7 +82,7 @@ class Checks:
                 self._mastered.add(kind)
         if any(key.endswith("success_rate") for key in entry):
             self.curve.append(entry)
-        factor = _CLOSE if self._whole else _APART
+        factor = _CLOSE if self.whole else _APART
         self._next = max(_FIRST, learning["decisions"] * factor)
 
 

@@ -6,7 +6,7 @@ A new one is a class derived from `Learner` and a line in `LEARNERS`.
 import copy
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -14,6 +14,11 @@ import cattrs
 
 from nomad_agents.agent import Agent
 from nomad_agents.benchmark.checks import Checks
+from nomad_agents.deep import LEARNERS as DEEP
+from nomad_agents.deep import DeepAgent, DeepSettings
+from nomad_agents.deep.environment import make_env
+from nomad_agents.deep.extra import require_extra
+from nomad_agents.deep.training import DeepTraining, train_deep
 from nomad_agents.experiments.learnt import learn
 from nomad_agents.experiments.runs import Row
 from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner
@@ -21,6 +26,7 @@ from nomad_agents.registry import AGENTS, find_config, make_agent
 from nomad_agents.training import Training, TrainingConfig
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import UnknownNameError
+from nomad_mj.perception import OBSERVATIONS
 
 
 class Opener(Protocol):
@@ -68,13 +74,14 @@ class Learner(ABC):
         As on the command line.
     variants : tuple of str
         What can follow it there after a colon; the first is meant where nothing does.
-    learns : bool
-        Whether it learns.
+    learns, deep : bool
+        Whether it learns; whether it takes hours to, and packages that are not always installed.
     """
 
     name: str
-    variants: tuple[str, ...] = ("faithful",)
+    variants: tuple[str, ...]
     learns: bool = True
+    deep: bool = False
 
     @abstractmethod
     def parameters(self, variant: str) -> Any:
@@ -132,14 +139,7 @@ class ReactionLearner(Learner):
             agent = ReactivePlanner(env.scene.robot.layout, find_config(lesson.variant))
 
             def check(training: Training) -> None:
-                checks.take(
-                    copy.deepcopy(agent),
-                    unaided(agent),
-                    decisions=training.decisions,
-                    sim_s=training.sim_s,
-                    virtual_collisions=training.virtual_collisions,
-                    bumper_contacts=training.bumper_contacts,
-                )
+                checks.take(copy.deepcopy(agent), unaided(agent), **_spent(training))
 
             def watch(training: Training) -> None:
                 nonlocal latest
@@ -150,11 +150,9 @@ class ReactionLearner(Learner):
 
             check(latest)
             most = min(lesson.budget, self._MOST_DECISIONS)
-            config = TrainingConfig(
-                lesson.seed, max_passes=self._MOST_PASSES, max_decisions=most
-            )
+            config = TrainingConfig(lesson.seed, max_passes=self._MOST_PASSES, max_decisions=most)
             row, _ = learn(env, agent, config, watch)
-        row |= {"learn_decisions": latest.decisions, "learn_sim_s": latest.sim_s}
+        row |= {f"learn_{name}": value for name, value in _spent(latest).items()}
         if row["learn_solved_all"]:
             row |= {"decisions_to_test": latest.decisions, "sim_s_to_test": latest.sim_s}
         return agent, row
@@ -167,11 +165,64 @@ def unaided(agent: ReactivePlanner) -> ReactivePlanner:
     return other
 
 
+class DeepLearner(Learner):
+    """SAC, TD3 or PPO of Stable-Baselines3, from a budget of decisions."""
+
+    variants = OBSERVATIONS
+    deep = True
+    _EVERY, _OFTEN = 500, 100  # decisions between two looks at whether a check is due
+
+    def __init__(self, name: str, settings: DeepSettings) -> None:
+        self.name = name
+        self._settings = settings
+
+    def parameters(self, variant: str) -> Any:
+        """Return the settings."""
+        return cattrs.unstructure(self._settings)
+
+    def require(self) -> None:
+        """Ask for PyTorch and Stable-Baselines3."""
+        require_extra()
+
+    def learn(self, lesson: Lesson) -> tuple[Agent, Row]:
+        """Train until the budget is spent."""
+        checks, training = lesson.checks, DeepTraining()
+        env = make_env(self._settings, lesson.variant, **lesson.task)
+
+        def evaluate(agent: DeepAgent, decisions: int, sim_s: float) -> None:
+            if checks.due(decisions) or decisions >= lesson.budget:
+                checks.take(agent, **_spent(training))
+
+        every = min(self._OFTEN if checks.whole else self._EVERY, lesson.budget)
+        with closing(env):
+            agent = train_deep(
+                self._settings, env, lesson.seed, lesson.budget, every, evaluate, training=training
+            )
+        return agent, {f"learn_{name}": value for name, value in _spent(training).items()}
+
+
+def _spent(training: Training | DeepTraining) -> dict[str, float]:
+    """Return what learning has taken so far."""
+    names = ("decisions", "sim_s", "virtual_collisions", "bumper_contacts")
+    return {name: getattr(training, name) for name in names}
+
+
 _REGISTERED: tuple[Learner, ...] = (
-    ReactionLearner(),
     *(Untaught(name) for name in AGENTS if name != ReactivePlanner.name),
+    ReactionLearner(),
+    *(DeepLearner(name, settings()) for name, settings in DEEP.items()),
 )
 LEARNERS: Mapping[str, Learner] = {each.name: each for each in _REGISTERED}
+
+
+def usual_agents() -> tuple[str, ...]:
+    """Return all agents that need no hours, the learners among them in all their variants."""
+    return tuple(
+        f"{each.name}:{variant}" if each.learns else each.name
+        for each in _REGISTERED
+        if not each.deep
+        for variant in (each.variants if each.learns else each.variants[:1])
+    )
 
 
 def find_learner(spec: str) -> tuple[Learner, str]:
@@ -181,8 +232,6 @@ def find_learner(spec: str) -> tuple[Learner, str]:
     ------
     UnknownNameError
         There is no such agent or variant.
-    ConfigError
-        Something must be installed first.
     """
     name, _, variant = spec.partition(":")
     if name not in LEARNERS:
@@ -191,5 +240,4 @@ def find_learner(spec: str) -> tuple[Learner, str]:
     variant = variant or learner.variants[0]
     if variant not in learner.variants:
         raise UnknownNameError(f"variant of {name}", variant, learner.variants)
-    learner.require()
     return learner, variant

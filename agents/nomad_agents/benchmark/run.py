@@ -67,7 +67,6 @@ def _task(run: BenchmarkRun) -> dict[str, Any]:
         "room": run.room,
         "robot": run.robot,
         "task_kwargs": find_condition(run.condition),
-        "environment_kwargs": {},
     }
 
 
@@ -75,8 +74,9 @@ def _open(task: dict[str, Any], **others: Any) -> closing[PathFinding]:
     return closing(nomad_mj.load("path_finding", **(task | others)))
 
 
-def work(run: BenchmarkRun, folder: Path) -> Result:
+def work(run: Run, folder: Path) -> Result:
     """Do one run; called in a process of its own."""
+    assert isinstance(run, BenchmarkRun)
     task = _task(run)
     limited = {"environment_kwargs": {"time_limit": run.time_limit}}
     learner, variant = find_learner(f"{run.agent}:{run.config}")

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from nomad_agents.cli.bench import Bench
+from nomad_agents.cli.benchmark import Benchmark
 from nomad_agents.cli.check import Check
 from nomad_agents.cli.common import fail
 from nomad_agents.cli.demo import Demo
@@ -25,6 +26,7 @@ COMMANDS: dict[str, type[Any]] = {
     "record": Record,
     "view": View,
     "reproduce": Reproduce,
+    "benchmark": Benchmark,
     "room": MakeRoom,
     "check": Check,
     "list": List,

@@ -37,7 +37,7 @@ class MakeRoom:
     """Make a room's MJCF file of a map, an image or a plan, or make up a room or a maze."""
 
     source: tyro.conf.Positional[str]
-    """Map or plan, .yaml, or image, .pgm or .png; or one of the words random, convex, wide, concave and maze."""
+    """Map or plan, .yaml, or image, .pgm or .png; or a word: random convex wide concave maze."""
     out: Annotated[str, tyro.conf.arg(aliases=["-o"])] = "room.xml"
     """The file to write, .xml."""
     resolution: float | None = None

@@ -39,9 +39,7 @@ def make_env(
         Anything wrong with these, in one line.
     """
     if observation not in OBSERVATIONS:
-        raise ConfigError(
-            f"observation {observation!r}: must be one of: {', '.join(OBSERVATIONS)}"
-        )
+        raise ConfigError(f"observation {observation!r}: must be one of: {', '.join(OBSERVATIONS)}")
     return gymnasium.make(
         PATH_FINDING,
         max_episode_steps=settings.episode_decisions,
