@@ -1,12 +1,14 @@
 """From results to the numbers that tables and figures show, by set and agent."""
 
 from collections.abc import Sequence
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 
 from nomad_agents.benchmark.run import BenchmarkRun
 from nomad_agents.experiments.runs import Result, Row
+from nomad_agents.experiments.statistics import Spread, spread
 from nomad_mj.types import FloatArray
 
 
@@ -62,6 +64,16 @@ def strata(results: Sequence[Result], key: str) -> list[FloatArray]:
         stratum = cases.setdefault((run.experiment, run.case, run.robot), [])
         stratum.append(np.nan if value is None else float(value))
     return [np.array(values) for values in cases.values()]
+
+
+def spread_of(results: Sequence[Result], key: str) -> Spread:
+    """Return how one number of an agent spreads over its runs, tasks as strata."""
+    return _spread(tuple(tuple(values.tolist()) for values in strata(results, key)))
+
+
+@cache  # tables, figures and the page ask for the same, and each takes a while
+def _spread(values: tuple[tuple[float, ...], ...]) -> Spread:
+    return spread([np.array(each) for each in values])
 
 
 def has(results: Sequence[Result], key: str) -> bool:

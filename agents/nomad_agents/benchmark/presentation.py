@@ -4,7 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from nomad_agents.benchmark.numbers import Group, grouped, strata
+from nomad_agents.benchmark.numbers import Group, grouped, spread_of
+from nomad_agents.benchmark.page import Part, write_page
+from nomad_agents.benchmark.pictures import draw_all, draw_learning
+from nomad_agents.benchmark.sets import SETS
 from nomad_agents.benchmark.tables import (
     AT_A_GLANCE,
     driving_table,
@@ -14,7 +17,6 @@ from nomad_agents.benchmark.tables import (
 from nomad_agents.checkpoint import write_atomically
 from nomad_agents.experiments.export import export
 from nomad_agents.experiments.runs import Result
-from nomad_agents.experiments.statistics import spread
 from nomad_agents.experiments.tables import TextTable, as_markdown
 
 TOLD = ("success_rate", "strict_success_rate", "spl", "barn_score")
@@ -60,13 +62,19 @@ def present(results: Sequence[Result], command: str, folder: Path, page: Path) -
     groups = grouped(results)
     write_tables(groups, command, folder / "tables.md")
     export(results, folder, parquet=True)
+    figures = folder / "figures"
+    parts = [Part("all sets", "", glances(groups), draw_all(groups, figures))]
+    for group in groups:
+        about = SETS[group.tasks].about if group.tasks in SETS else ""
+        parts.append(Part(group.name, about, group_tables(group), draw_learning(group, figures)))
+    write_page(page, parts, command, results)
 
 
 def numbers(results: Sequence[Result]) -> dict[str, Any]:
     """Return interquartile means with their intervals, by set, agent and metric."""
     return {
         group.name: {
-            agent: {key: spread(strata(held, key))._asdict() for key in TOLD}
+            agent: {key: spread_of(held, key)._asdict() for key in TOLD}
             for agent, held in group.agents.items()
         }
         for group in grouped(results)

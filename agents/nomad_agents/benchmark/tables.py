@@ -3,10 +3,8 @@
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
-from nomad_agents.benchmark.numbers import Group, has, strata
-from nomad_agents.benchmark.sets import SETS
+from nomad_agents.benchmark.numbers import Group, has, spread_of, strata
 from nomad_agents.experiments.runs import Result
-from nomad_agents.experiments.statistics import spread
 from nomad_agents.experiments.tables import TextTable, mean_cell, median_cell, total_cell
 
 
@@ -56,7 +54,7 @@ def glance_table(groups: Sequence[Group], key: str) -> TextTable:
         held = [group.agents.get(agent, []) for group in groups]
         every = [result for results in held for result in results]
         columns = [*held, every] if len(groups) > 1 else held
-        rows.append((agent, *(mean_cell(spread(strata(each, key)), 2) for each in columns)))
+        rows.append((agent, *(mean_cell(spread_of(each, key), 2) for each in columns)))
     names = [group.name for group in groups]
     headings = ("", *names, *(["all runs"] if len(groups) > 1 else []))
     return TextTable(AT_A_GLANCE[key], headings, tuple(rows))
@@ -64,9 +62,7 @@ def glance_table(groups: Sequence[Group], key: str) -> TextTable:
 
 def driving_table(group: Group) -> TextTable:
     """Return what came of the evaluation in one set."""
-    about = SETS[group.tasks].about if group.tasks in SETS else ""
-    rows = _rows(group.agents, DRIVING)
-    return TextTable(f"{group.name}: {about}".removesuffix(": "), _headings(DRIVING), rows)
+    return TextTable(f"{group.name}: driving", _headings(DRIVING), _rows(group.agents, DRIVING))
 
 
 def learning_table(group: Group) -> TextTable | None:
@@ -76,9 +72,7 @@ def learning_table(group: Group) -> TextTable | None:
     }
     if not learners:
         return None
-    return TextTable(
-        f"{group.name}: what learning took", _headings(LEARNING), _rows(learners, LEARNING)
-    )
+    return TextTable(f"{group.name}: learning", _headings(LEARNING), _rows(learners, LEARNING))
 
 
 def _headings(columns: Sequence[Column]) -> tuple[str, ...]:
@@ -101,5 +95,5 @@ def _cell(results: Sequence[Result], column: Column) -> str:
     if column.kind == "total":
         return total_cell(values)
     if column.kind == "mean":
-        return mean_cell(spread(values), column.digits)
+        return mean_cell(spread_of(results, column.key), column.digits)
     return median_cell(values, column.digits) or "never"

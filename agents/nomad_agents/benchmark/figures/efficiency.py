@@ -54,7 +54,7 @@ def draw_efficiency(
         _name_levels(axes, levels)
         axes.set_title(title)
         axes.set_xlabel("decisions of learning")
-        axes.set_ylabel("unseen starts from which the goal is reached [%]")
+        axes.set_ylabel("unseen starts solved [%]")
         grid(axes, "both")
         legend_below(figure, _signs(curves, unaided), 3)
 
@@ -66,11 +66,9 @@ def _draw(axes: Axes, curve: Efficiency, seen: Look, last: float, *, thin: bool 
         100 * np.append(each, each[-1]) for each in (curve.low, curve.median, curve.high)
     )
     width = 1.2 if thin else seen.width
-    axes.step(
-        decisions, median, where="post", color=seen.colour, ls=seen.style, lw=width, zorder=4
-    )
+    axes.step(decisions, median, where="post", color=seen.colour, ls=seen.style, lw=width, zorder=4)
     if not thin:
-        axes.fill_between(decisions, low, high, step="post", color=seen.colour, alpha=0.14, lw=0)
+        axes.fill_between(decisions, low, high, color=seen.colour, alpha=0.14, lw=0)
     if np.isfinite(curve.mastered) and not thin:
         face = seen.colour if seen.filled else "white"
         axes.plot(

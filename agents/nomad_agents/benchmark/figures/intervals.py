@@ -45,5 +45,6 @@ def draw_intervals(groups: Mapping[str, Mapping[str, Spread]], path: Path, score
             axes.tick_params(axis="y", length=0)
             grid(axes, "x")
         for number, axes in enumerate(panels.flat[: len(groups)]):
-            axes.tick_params(labelbottom=number + columns >= len(groups))
-        figure.supxlabel(score, fontsize=12)
+            lowest = number + columns >= len(groups)
+            axes.tick_params(labelbottom=lowest)
+            axes.set_xlabel(score if lowest else "")

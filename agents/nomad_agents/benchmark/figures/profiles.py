@@ -47,7 +47,8 @@ def draw_profiles(groups: Mapping[str, Mapping[str, Profile]], path: Path, score
             axes.set_ylim(-0.02, 1.04)
             grid(axes, "both")
         for number, axes in enumerate(panels.flat[: len(groups)]):
-            axes.tick_params(labelbottom=number + columns >= len(groups))
-        figure.supxlabel(f"{score}, threshold", fontsize=12)
+            lowest = number + columns >= len(groups)
+            axes.tick_params(labelbottom=lowest)
+            axes.set_xlabel(f"{score} >" if lowest else "")
         figure.supylabel("share of runs above it", fontsize=12)
         legend_below(figure, signs(labels), 4 if columns > 2 else 3)
