@@ -5,15 +5,18 @@ Robotics & Automation Magazine 4 (1997).
 
 What is adapted, and why:
 
-- The authors choose a pair of speeds every quarter of a second, of those that the motors can reach by
-  then. Our robot stands when it decides, and what it decides on is a whole move, so the window
+- The authors choose a pair of speeds every quarter of a second, of those that the motors can reach
+  by then. Our robot stands when it decides, and what it decides on is a whole move, so the window
   is what a move can reach: all directions, since it turns on the spot, and all lengths up to the
   longest move. Curves are not among them: a move is straight.
 - A pair of speeds is admissible if the robot can stop before the nearest obstacle. A move ends at
   rest, so it is admissible if it ends before what the map shows, with a safety distance.
-- The window of speeds also keeps a robot from turning round at once. Here that is in the
-  objective's speed: of the whole move, turning from the direction of the last one included.
+- Speeds within reach of the present ones also keep a robot from turning round at once. Here the
+  window leaves out what lies farther than some angle from the direction of the last move, unless
+  nothing else is left; and the objective's speed is that of the whole move, its turn included.
 - Distances are read off the certainty grid, where the authors use a line for each sonar echo.
+
+- A goal that a move reaches is taken. Past a point so near the heading says nothing.
 
 The objective is theirs: heading, clearance and speed, each in [0, 1], weighted, summed, smoothed.
 """
@@ -52,6 +55,8 @@ class DwaConfig:
         Standard deviation of the smoothing over directions [rad].
     directions, lengths : int
         How many of each make up the window.
+    turn : float
+        Directions farther than this from the last move's are not in the window [rad].
     turn_way : float
         Turning by a radian takes as long as driving so far [m].
     sight : float
@@ -63,14 +68,15 @@ class DwaConfig:
     """
 
     heading: float = 2.0
-    clearance: float = 0.2
-    speed: float = 0.2
+    clearance: float = 0.6
+    speed: float = 0.4
     smoothing: float = 0.1
     directions: int = 72
     lengths: int = 5
+    turn: float = np.deg2rad(100)
     turn_way: float = 0.58
     sight: float = 2.0
-    safety: float = 0.15
+    safety: float = 0.2
     occupied: float = 0.5
 
     def __post_init__(self) -> None:
@@ -82,6 +88,7 @@ class DwaConfig:
             smoothing=(0, np.pi),
             directions=(4, 3600),
             lengths=(1, 100),
+            turn=(0, np.pi),
             turn_way=(0, np.inf),
             sight=(0.01, np.inf),
             safety=(0, np.inf),
@@ -126,17 +133,30 @@ class DynamicWindow(Agent):
         headings = direction(goal) + self._offsets
         cells = occupied_cells(percept, self.situation.grid, config.occupied)
         free = free_way(headings, cells, self._reach)
+        if np.hypot(goal[0], goal[1]) <= min(longest, free[0]):
+            return self._move(float(headings[0]), longest, goal)
         lengths = longest * np.arange(1, config.lengths + 1) / config.lengths
+        turn = np.zeros_like(headings)
+        if self._last is not None:
+            turn = np.abs(wrap_angle(headings - self._last))
         admissible = lengths <= free[:, None]
         if not admissible.any():  # as far as it goes, where it goes farthest
             best = int(np.argmax(free))
             return self._move(float(headings[best]), max(float(free[best]), _BLOCKED), goal)
-        value = np.where(admissible, self._objective(headings, lengths, free, goal), -np.inf)
+        within = admissible & (turn <= config.turn)[:, None]
+        admissible = within if within.any() else admissible
+        value = self._objective(headings, lengths, free, turn, goal)
+        value = np.where(admissible, value, -np.inf)
         best, length = np.unravel_index(int(np.argmax(value)), value.shape)
         return self._move(float(headings[best]), float(lengths[length]), goal)
 
     def _objective(
-        self, headings: FloatArray, lengths: FloatArray, free: FloatArray, goal: FloatArray
+        self,
+        headings: FloatArray,
+        lengths: FloatArray,
+        free: FloatArray,
+        turn: FloatArray,
+        goal: FloatArray,
     ) -> FloatArray:
         """Return the smoothed objective of all moves (directions, lengths)."""
         config = self.config
@@ -144,9 +164,6 @@ class DynamicWindow(Agent):
         left = goal - ends  # (directions, lengths, 2)
         off = np.abs(wrap_angle(direction(left) - headings[:, None]))
         off = np.where(np.hypot(left[..., 0], left[..., 1]) < _NEAR, 0.0, off)
-        turn = np.zeros_like(headings)
-        if self._last is not None:
-            turn = np.abs(wrap_angle(headings - self._last))
         speed = lengths / (lengths[-1] + config.turn_way * turn[:, None])
         clearance = np.minimum(free, config.sight) / config.sight
         total = config.heading * (1 - off / np.pi) + config.speed * speed

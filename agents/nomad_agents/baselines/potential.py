@@ -4,17 +4,19 @@ Source: J. Borenstein, Y. Koren, "Real-time obstacle avoidance for fast mobile r
 Transactions on Systems, Man, and Cybernetics 19 (1989), reference 11 of the learning paper.
 
 Every occupied cell pushes the robot away, by its certainty and the inverse square of its distance;
-the goal pulls with a constant force; the robot drives along the sum. The authors damp what would make
-it swing: a cell pushes less the less the robot drives at it. Where the force turns it away from the
-goal by more than a right angle, it is about to be trapped in a local minimum, and follows the wall
-until the goal is ahead again.
+the goal pulls with a constant force; the robot drives along the sum. The authors damp what would
+make it swing: a cell pushes less the less the robot drives at it. Where the force turns it away
+from the goal by more than a right angle, it is about to be trapped in a local minimum, and follows
+the wall until the goal is ahead again.
 
 What is adapted, and why:
 
-- The authors steer some ten times a second while the robot drives. Here a decision is a move, so it is
-  short where forces act on the robot: the more so the more squarely they oppose it, as the
+- The authors steer some ten times a second while the robot drives. Here a decision is a move, so
+  it is short where forces act on the robot: the more so the more squarely they oppose it, as the
   authors slow down, and never into what the grid shows in its way.
 - Their grid adds up readings as the robot drives. Here it is that of one round of readings.
+- The authors leave the wall when the robot faces the goal again. Here that would lead it back into
+  the trap with the next move, so it must also have come nearer to the goal than it was there.
 - What is farther than the goal does not push, or a goal before a wall is never reached.
 
 Narrow passages push back with all of their walls: what the method is known for (J. Borenstein,
@@ -72,13 +74,13 @@ class PotentialConfig:
         Above this probability a cell pushes; what nothing sees does not.
     """
 
-    repulsion: float = 0.02
+    repulsion: float = 0.03
     near: float = 0.1
     window: float = 1.0
-    damping: float = 0.25
+    damping: float = 0.5
     slowest: float = 0.2
-    follow: float = np.deg2rad(110)
-    safety: float = 0.15
+    follow: float = np.deg2rad(95)
+    safety: float = 0.2
     occupied: float = 0.5
 
     def __post_init__(self) -> None:
@@ -123,7 +125,8 @@ class PotentialField(Agent):
     def start_episode(self, chance: np.random.Generator | None = None) -> None:
         """Forget the last direction and the wall that was followed."""
         self._last: float | None = None
-        self._side = 0  # of the wall that is followed: 1 left, -1 right, 0 none
+        self._side = 0  # to which it turns from the wall's push: 1 left, -1 right, 0 no wall
+        self._trapped_at = np.inf  # distance to the goal where it began to follow a wall [m]
 
     def act(self, percept: Percept, explore: np.random.Generator | None) -> Decision:
         """Return the move along the force."""
@@ -134,7 +137,7 @@ class PotentialField(Agent):
         ahead = float(direction(goal))
         push, raw = self._repulsion(percept, ahead if self._last is None else self._last)
         pull = goal / np.hypot(goal[0], goal[1])
-        heading = self._steer(float(direction(pull + push)), raw, ahead)
+        heading = self._steer(float(direction(pull + push)), raw, goal)
         cells = occupied_cells(percept, self.situation.grid, self.config.occupied)
         heading, free = _clear(heading, cells, self._reach)
         length = self._length(heading, raw, longest)
@@ -152,22 +155,21 @@ class PotentialField(Agent):
         damped = config.damping + (1 - config.damping) * np.maximum(facing, 0.0)
         return (certainty * damped) @ self._push, raw
 
-    def _steer(self, force: float, push: FloatArray, goal: float) -> float:
-        """Return where to head: along the force, or along the wall where that leads back."""
+    def _steer(self, force: float, push: FloatArray, goal: FloatArray) -> float:
+        """Return where to head [rad]: along the force, or along a wall where that leads back."""
         if not self.config.follow or not push.any():
             self._side = 0
             return force
-        pushed = float(direction(push))
-        if not self._side and abs(float(wrap_angle(force - goal))) > np.pi / 2:
-            before = goal if self._last is None else self._last
-            turn = float(wrap_angle(before - pushed))
-            self._side = 1 if turn >= 0 else -1
-        if self._side:
-            along = float(wrap_angle(pushed + self._side * self.config.follow))
-            if abs(float(wrap_angle(along - goal))) > np.pi / 2:
-                return along
+        ahead, distance = float(direction(goal)), float(np.hypot(goal[0], goal[1]))
+        back = abs(float(wrap_angle(force - ahead))) > np.pi / 2
+        if self._side and not back and distance < self._trapped_at:
             self._side = 0
-        return force
+        pushed = float(direction(push))
+        if not self._side and back:
+            self._trapped_at = distance
+            before = ahead if self._last is None else self._last
+            self._side = 1 if float(wrap_angle(before - pushed)) >= 0 else -1
+        return pushed + self._side * self.config.follow if self._side else force
 
     def _length(self, heading: float, push: FloatArray, longest: float) -> float:
         """Return how far to go [m]: the less, the more squarely the push opposes or aids it."""

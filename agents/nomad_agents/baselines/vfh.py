@@ -6,22 +6,25 @@ Y. Koren, "The vector field histogram", IEEE Transactions on Robotics and Automa
 
 What is adapted, and why:
 
-- The authors add up readings in their grid as the robot drives. Here the grid is that of one round of
-  readings, which all sensors of the ring give at once.
-- The third histogram masks directions that a robot cannot turn to because something lies in its curve.
-  Our robot turns on the spot before it drives, its curve has radius 0, and the masked histogram
-  is the binary one.
+- The authors add up readings in their grid as the robot drives. Here the grid is that of one round
+  of readings, which all sensors of the ring give at once.
+- The third histogram masks directions that a robot cannot turn to because something lies in its
+  curve. Our robot turns on the spot before it drives, its curve has radius 0, and the masked
+  histogram is the binary one.
 - The cost counts the turn from the present direction and that from the direction chosen last. The
   wheels of a robot that stands still face where it drove last: the two are the same, and
   their weights add up.
 - The authors set a speed by the density ahead; here it is the length of a move, which ends before
   what the grid shows in its way.
-- What is farther than the goal is left out of the histogram, or a goal before a wall is never reached.
+- What is farther than the goal is left out of the histogram, or a goal before a wall is never
+  reached.
 """
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from nomad_agents.agent import Agent, Decision
 from nomad_agents.baselines.way import (
@@ -37,6 +40,8 @@ from nomad_agents.reactive_planner.config import ReactivePlannerConfig
 from nomad_mj.geometry import direction, wrap_angle
 from nomad_mj.perception import GridSpec, Percept
 from nomad_mj.types import FloatArray, SensorLayout
+
+_Sectors: TypeAlias = npt.NDArray[np.bool_]
 
 _NEAR = 1e-6  # [m] from the goal: there is no direction to it
 _BLOCKED = 0.02  # [m] a direction is no way out that leads no farther
@@ -59,7 +64,7 @@ class VfhConfig:
     wide : float
         s_max: in an opening wider than this [rad] the robot keeps half of it from either border.
     goal, current, previous : float
-        Weights mu_1, mu_2 and mu_3 of the turns from the goal's, the present and the last direction.
+        Weights mu_1, mu_2 and mu_3 of the turns from the goal's, the present and the last way.
     safety : float
         Distance to keep from the centres of occupied cells, beside the robot's radius [m].
     occupied : float
@@ -70,7 +75,7 @@ class VfhConfig:
     window: float = 1.65
     low: float = 0.2
     high: float = 0.4
-    wide: float = np.deg2rad(80)
+    wide: float = np.deg2rad(40)
     goal: float = 5.0
     current: float = 2.0
     previous: float = 2.0
@@ -113,18 +118,19 @@ class VectorFieldHistogram(Agent):
         self.start_episode()
 
     def _tables(self, grid: GridSpec) -> tuple[FloatArray, FloatArray]:
-        """Return each cell's distance (cells**2,) [m] and weight in each sector (sectors, cells**2).
+        """Return the cells' distances (cells**2,) [m] and weights (sectors, cells**2).
 
         A cell counts in all sectors in which the robot, grown by the safety distance, would touch
         it: this is the enlargement of VFH+.
         """
         config, cells = self.config, centres(grid)
-        distance = np.hypot(cells[:, 0], cells[:, 1])
+        distance: FloatArray = np.hypot(cells[:, 0], cells[:, 1])
         half = np.arcsin(np.minimum(self._reach / np.maximum(distance, self._reach), 1.0))
         middle = np.arange(config.sectors)[:, None] * self._width
-        covers = np.abs(wrap_angle(middle - direction(cells))) <= half
+        # A hair more, so that rounding does not tell left from right at a right angle.
+        covers = np.abs(wrap_angle(middle - direction(cells))) <= half + 1e-9
         weight = np.maximum(1 - (distance / config.window) ** 2, 0.0)
-        return distance, covers * weight
+        return distance, np.where(covers, weight, 0.0)
 
     def start_episode(self, chance: np.random.Generator | None = None) -> None:
         """Forget the sectors that were blocked and the last direction."""
@@ -146,10 +152,13 @@ class VectorFieldHistogram(Agent):
         headings, free = headings[free > _BLOCKED], free[free > _BLOCKED]
         if len(headings):
             best = int(np.argmin(self._cost(headings, goal)))
-        else:  # shut in: the emptiest sector of those that lead anywhere
-            headings = np.arange(config.sectors) * self._width
+        else:  # shut in: the emptiest of the sectors that lead anywhere, of these the freest
+            headings = np.arange(config.sectors, dtype=np.float64) * self._width
             free = free_way(headings, cells, self._reach)
-            best = int(np.argmin(np.where(free > min(_BLOCKED, free.max()), density, np.inf)))
+            density = np.where(free >= min(_BLOCKED, free.max()), density, np.inf)
+            way = np.where(density <= density.min() + 1e-9, np.minimum(free, longest), -np.inf)
+            cost = np.where(way >= way.max() - 1e-9, self._cost(headings, goal), np.inf)
+            best = int(np.argmin(cost))
         self._last = float(headings[best])
         length = min(max(float(free[best]), _BLOCKED), longest)
         return Decision(action_towards(self._last, length, goal, self.action), "reacted")
@@ -160,7 +169,7 @@ class VectorFieldHistogram(Agent):
         near = self._distance <= np.hypot(percept.goal[0], percept.goal[1]) + self._reach
         return self._spread @ np.where(near & (certainty > self.config.occupied), certainty**2, 0.0)
 
-    def _candidates(self, free: FloatArray, goal: float) -> FloatArray:
+    def _candidates(self, free: _Sectors, goal: float) -> FloatArray:
         """Return the directions to choose from (n,) [rad]: of each opening, one, two or three."""
         if free.all():
             return np.array([goal])
