@@ -12,12 +12,11 @@ import numpy.typing as npt
 from gymnasium import spaces
 
 from nomad_mj.envs import percept_of
-from nomad_mj.perception import SituationSpec
+from nomad_mj.perception import SituationSpec, code_ranges
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.tasks import MotorTask
 
 FloatArray32 = npt.NDArray[np.float32]
-DISTANCE_SCALE = 5.0  # [m] at which the distance to the goal reads 1/e
 
 
 class Observer(Protocol):
@@ -53,19 +52,15 @@ class RangesObserver:
     """
 
     def __init__(self, scene: Scene) -> None:
-        rings = scene.robot.layout.rings
-        self._rings = [(ring.name, ring.max_range) for ring in rings]
+        self._layout = scene.robot.layout
         low = np.concatenate([np.zeros(scene.robot.layout.count), [-1.0, -1.0, 0.0]])
         self.space = spaces.Box(low.astype(np.float32), np.float32(1.0), dtype=np.float32)
 
     def __call__(self, observation: Mapping[str, Any], first: bool) -> FloatArray32:
         """Return the readings and where the goal is."""
-        x, y = observation["goal"].tolist()
-        turn = math.atan2(y, x) - float(observation["odometry"][3])
-        near = math.exp(-math.hypot(x, y) / DISTANCE_SCALE)
-        parts = [observation[name] / longest for name, longest in self._rings]
-        parts.append(np.array([math.cos(turn), math.sin(turn), near]))
-        return np.concatenate(parts).astype(np.float32)
+        ranges = np.concatenate([observation[ring.name] for ring in self._layout.rings])
+        sensors = observation["odometry"][3]
+        return code_ranges(ranges, sensors, observation["goal"], self._layout)
 
 
 class DrivenRangesObserver:

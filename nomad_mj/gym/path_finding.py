@@ -47,6 +47,11 @@ class PathFindingEnv(NavigationEnv):
     width, height : int, optional
         Of the pictures [px], even; what suits the view if None.
 
+    Attributes
+    ----------
+    observation, situation
+        As given.
+
     Raises
     ------
     NomadError
@@ -95,6 +100,7 @@ class PathFindingEnv(NavigationEnv):
         except BaseException:
             env.close()
             raise
+        self.observation, self.situation = observation, spec
         self._farthest = max(ring.max_range for ring in env.scene.robot.layout.rings)
         if render_mode is not None:
             env.on_control_step = lambda _: camera.follow(env.physics)

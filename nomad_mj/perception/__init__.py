@@ -2,7 +2,13 @@
 
 from nomad_mj.perception.certainty_grid import GridSpec, cell_centres, certainty_grid
 from nomad_mj.perception.coarse_coding import code_grid, code_signal, pool
-from nomad_mj.perception.coded_percept import OBSERVATIONS, Observation, code_percept, coded_size
+from nomad_mj.perception.coded_percept import (
+    OBSERVATIONS,
+    Observation,
+    code_percept,
+    code_ranges,
+    coded_size,
+)
 from nomad_mj.perception.situation import Percept, SituationSpec, attraction_force, perceive
 
 __all__ = [
@@ -16,6 +22,7 @@ __all__ = [
     "certainty_grid",
     "code_grid",
     "code_percept",
+    "code_ranges",
     "code_signal",
     "coded_size",
     "perceive",

@@ -34,8 +34,8 @@ def test_actions_are_those_that_the_learner_predicts(name: str) -> None:
     shown = rng.random((500, 26), np.float32)
     actions = policy(shown)
     assert actions.dtype == np.float32 and 0.1 < (np.abs(actions) > 0.99).mean() < 0.9
-    assert actions == pytest.approx(model.predict(shown, deterministic=True)[0], abs=1e-6)
-    assert policy(shown[7]) == pytest.approx(actions[7], abs=1e-6)
+    assert actions == pytest.approx(model.predict(shown, deterministic=True)[0], abs=1e-5)
+    assert policy(shown[7]) == pytest.approx(actions[7], abs=1e-5)
     before = policy(shown).copy()
     for parameter in model.policy.parameters():
         parameter.data.zero_()
