@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from nomad_agents.cli.bench import Bench
+from nomad_agents.cli.benchmark import Benchmark
 from nomad_agents.cli.check import Check
 from nomad_agents.cli.common import fail
 from nomad_agents.cli.demo import Demo
@@ -29,6 +30,7 @@ COMMANDS: dict[str, type[Any]] = {
     "view": View,
     "reproduce": Reproduce,
     "sweep": Sweep,
+    "benchmark": Benchmark,
     "room": MakeRoom,
     "check": Check,
     "list": List,

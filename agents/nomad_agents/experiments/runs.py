@@ -58,6 +58,16 @@ class Run:
         words = [re.sub(r"[^A-Za-z0-9.]+", "-", part) for part in parts]
         return f"{'_'.join(words)}_{self.seed:04d}.json"
 
+    def parameters(self) -> Row:
+        """Return what the names of a run stand for, as data: a result of other values is stale.
+
+        Raises
+        ------
+        NomadError
+            A name that stands for nothing.
+        """
+        return cattrs.unstructure(find_config(self.config))
+
 
 @dataclass
 class Result:
@@ -90,7 +100,7 @@ class Result:
 def _key(run: Run) -> Row:
     """Return what a file must agree with to be this run's: no stale numbers of another version."""
     key = {**asdict(run), "packages": {name: version(name) for name in PACKAGES}}
-    key["parameters"] = cattrs.unstructure(find_config(run.config))
+    key["parameters"] = run.parameters()
     key["files"] = [digest(find_room(run.room)), digest(find_robot(run.robot))]
     return json.loads(json.dumps(key))
 

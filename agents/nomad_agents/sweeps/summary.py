@@ -7,7 +7,7 @@ import numpy as np
 
 from nomad_agents.experiments.figures.sweep import Panel, Series, draw_sweep
 from nomad_agents.experiments.statistics import spread
-from nomad_agents.experiments.tables import TextTable, mean_interval, quartiles
+from nomad_agents.experiments.tables import TextTable, mean_cell, median_cell
 from nomad_agents.sweeps.grid import Cell, Grid, show
 from nomad_agents.sweeps.options import Value
 from nomad_agents.sweeps.store import Store
@@ -69,7 +69,7 @@ def _line(store: Store, cell: Cell, metrics: Sequence[str]) -> tuple[str, ...]:
     line.append(str(len(store.runs_of(cell))))
     for metric in metrics:
         values, digits = column(store, cell, metric), _digits(metric, store)
-        line += [quartiles([values], digits), mean_interval(spread([values]), digits)]
+        line += [median_cell([values], digits), mean_cell(spread([values]), digits)]
     return tuple(line)
 
 
