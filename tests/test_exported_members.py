@@ -29,9 +29,9 @@ PUBLIC = {
         "add_obstacles place_goal read_moving"
     ),
     "nomad_mj.rooms": (
-        "Box Cylinder FREE OCCUPIED Occupancy Polygon Room UNKNOWN concave_room convex_room furnish "
-        "maze_room merge_cells random_room read_floor_image read_plan read_room read_ros_map "
-        "room_of_map to_mjcf wide_room"
+        "Box Cylinder FREE OCCUPIED Occupancy Polygon Room UNKNOWN concave_room convex_room "
+        "furnish maze_room merge_cells random_room read_floor_image read_plan read_room "
+        "read_ros_map room_of_map to_mjcf wide_room"
     ),
     "nomad_mj.robots": (
         "PREFIX RayIndex RobotDescription Sheet adopt describe_robot find_sheet group_rays reach "
