@@ -12,7 +12,7 @@ PUBLIC = {
         "RangeNoise SonarEffects Walkers list_robots list_rooms load"
     ),
     "nomad_mj.perception": (
-        "GridSpec OBSERVATIONS Observation Percept SituationSpec attraction_force cell_centres "
+        "OBSERVATIONS GridSpec Observation Percept SituationSpec attraction_force cell_centres "
         "certainty_grid code_grid code_percept code_ranges code_signal coded_size perceive pool"
     ),
     "nomad_mj.motion": (
@@ -39,6 +39,7 @@ PUBLIC = {
     "nomad_mj.envs": (
         "DEFAULT_ROBOT DEFAULT_ROOM TASKS PathFinding PathFindingConfig load percept_of"
     ),
+    "nomad_mj.gym": "MotorEnv NavigationEnv PathFindingEnv register",
 }
 ERRORS = (
     "CheckpointError ConfigError ModelError NomadError OutputError RenderError StartError "

@@ -2,56 +2,25 @@
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Literal, SupportsFloat
+from typing import Any, SupportsFloat
 
 import dm_env
 import gymnasium
 import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
-from gymnasium.error import ResetNeeded
+from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import ConfigError
 from nomad_mj.gym.camera import Camera
 from nomad_mj.gym.observations import Observer
+from nomad_mj.gym.reward import RewardOptions
 from nomad_mj.tasks import MotorEnvironment, MotorTask, NavigationPhysics
 
 Action = npt.NDArray[np.floating[Any]]
 _RESET_OPTIONS = ("start",)
 _SUMMED = ("cost", "driven", "duration")
-
-
-@dataclass(frozen=True)
-class RewardOptions:
-    """What the reward is made of; their sum is paid.
-
-    Attributes
-    ----------
-    reward : "task" or "sparse"
-        That of the task below, or 1 at the goal and 0 elsewhere.
-    goal_bonus : float
-        Paid beside it when the goal is reached.
-    progress : float
-        Paid for each metre that the robot's true distance to the goal has become shorter.
-    """
-
-    reward: Literal["task", "sparse"] = "task"
-    goal_bonus: float = 0.0
-    progress: float = 0.0
-
-    def __post_init__(self) -> None:
-        if self.reward not in ("task", "sparse"):
-            raise ConfigError(f"reward {self.reward!r}: must be 'task' or 'sparse'")
-        for name in ("goal_bonus", "progress"):
-            if not np.isfinite(getattr(self, name)):
-                raise ConfigError(f"{name} {getattr(self, name)}: must be a finite number")
-
-    def total(self, task: float, reached: bool, nearer: float) -> float:
-        """Return the reward of a step that brought the robot `nearer` [m] to the goal."""
-        own = task if self.reward == "task" else float(reached)
-        return own + self.goal_bonus * reached + self.progress * nearer
 
 
 class NavigationEnv(gymnasium.Env[Any, Action]):
@@ -139,7 +108,11 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         ------
         StartError, UnknownNameError, ConfigError
             A start that there is not, another option.
+        ClosedEnvironmentError
+            The environment has been closed.
         """
+        if self._closed:
+            raise ClosedEnvironmentError("the environment has been closed: make another one")
         super().reset(seed=seed)
         options = options or {}
         for name in options:
@@ -174,7 +147,7 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         if action.shape != self.action_space.shape or not np.isfinite(action).all():
             (count,) = self.action_space.shape or (0,)
             raise ValueError(f"action {action}: must be {count} finite numbers in [-1, 1]")
-        step = self.environment.step(self._command(np.clip(action, -1.0, 1.0)))
+        step = self.environment.step(self._command(action.clip(-1.0, 1.0)))
         self.seen, self._over = step.observation, step.last()
         self._steps += 1
         before, self._distance = self._distance, self.task.goal_distance(self.physics)

@@ -9,11 +9,12 @@ import dm_env
 import numpy as np
 
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, load
-from nomad_mj.gym.base import NavigationEnv, RewardOptions, picture_size, refuse_observation
+from nomad_mj.gym.base import NavigationEnv, picture_size, refuse_observation
 from nomad_mj.gym.camera import Camera
 from nomad_mj.gym.everything import EverythingObserver
 from nomad_mj.gym.observations import DrivenRangesObserver, Observer
 from nomad_mj.gym.options import task_options
+from nomad_mj.gym.reward import RewardOptions
 from nomad_mj.scene import CONTROL_TIMESTEP
 from nomad_mj.types import FloatArray
 
@@ -73,6 +74,7 @@ class MotorEnv(NavigationEnv):
             }
             spec = env.action_spec()
             self._low, self._high = spec.minimum, spec.maximum
+            self._largest = np.maximum(np.abs(self._low), np.abs(self._high))
             count = spec.shape[0]
             super().__init__(env, observers[observation], options, count, render_mode, camera)
         except BaseException:
@@ -81,8 +83,7 @@ class MotorEnv(NavigationEnv):
 
     def _command(self, action: FloatArray) -> FloatArray:
         """Return the motors' commands; 0 is 0, whatever the limits."""
-        largest = np.maximum(np.abs(self._low), np.abs(self._high))
-        return np.clip(action * largest, self._low, self._high)
+        return (action * self._largest).clip(self._low, self._high)
 
     def _measures(self, step: dm_env.TimeStep) -> dict[str, Any]:
         travel = self.task.travel
