@@ -9,7 +9,7 @@ from dm_control.rl.control import FLAT_OBSERVATION_KEY
 from dm_env import specs
 
 from nomad_mj.batch.environment import BatchEnvironment
-from nomad_mj.batch.specs import stacked
+from nomad_mj.batch.specs import stacked_bounded
 from nomad_mj.batch.timestep import LAST, BatchTimeStep
 from nomad_mj.batch.worlds import Mask, Worlds
 from nomad_mj.scene import CONTROL_TIMESTEP
@@ -43,14 +43,15 @@ class BatchMotor(BatchEnvironment):
 
     def action_spec(self) -> specs.BoundedArray:
         """Return the motors' limits, (N, M)."""
-        return stacked(self.tasks[0].motor_spec(), self.count)
+        return stacked_bounded(self.tasks[0].motor_spec(), self.count)
 
     def single_observation_spec(self) -> "OrderedDict[str, specs.Array]":
         """Return the shapes and limits of one world's observations; flat ones have no limits."""
         spec = self.tasks[0].sensor_spec()
         if self._flat:
             size = sum(int(np.prod(part.shape)) for part in spec.values())
-            spec = OrderedDict([(FLAT_OBSERVATION_KEY, specs.Array((size,), np.float64))])
+            whole = specs.Array((size,), np.float64, name=FLAT_OBSERVATION_KEY)
+            return OrderedDict[str, specs.Array]([(FLAT_OBSERVATION_KEY, whole)])
         return spec
 
     def step(self, actions: npt.ArrayLike, mask: Mask = None) -> BatchTimeStep:

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from dm_env import specs
 
 from nomad_mj.batch.environment import BatchEnvironment
-from nomad_mj.batch.specs import stacked
+from nomad_mj.batch.specs import stacked_bounded
 from nomad_mj.batch.timestep import LAST, BatchTimeStep
 from nomad_mj.batch.worlds import Mask, Worlds
 from nomad_mj.envs import PathFindingConfig
@@ -64,7 +64,7 @@ class BatchPathFinding(BatchEnvironment):
 
     def action_spec(self) -> specs.BoundedArray:
         """Return (dx, dy) in [-1, 1], (N, 2)."""
-        return stacked(move_spec(), self.count)
+        return stacked_bounded(move_spec(), self.count)
 
     def single_observation_spec(self) -> "OrderedDict[str, specs.Array]":
         """Return the motor task's observations of one world and what is told of a move."""
@@ -162,7 +162,7 @@ class BatchPathFinding(BatchEnvironment):
             self._moves.clear()
             raise
         nearest = np.minimum.reduce(worlds.ranges[chosen], axis=1).tolist()
-        bumped = worlds.bumpers[chosen].any(axis=1).tolist()
+        bumped = np.logical_or.reduce(worlds.bumpers[chosen], axis=1).tolist()
         for world, near, touched in zip(going, nearest, bumped, strict=True):
             travel, odometry = worlds.tasks[world].travel, worlds.odometry[world]
             self._moves[world][0].take_in(travel, odometry, near, touched)

@@ -3,6 +3,7 @@
 import math
 from collections import OrderedDict
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -200,7 +201,7 @@ class Worlds:
             raise ConfigError(f"mask: must be {self.count} times True or False, one for each world")
         return np.flatnonzero(given)
 
-    def seeds(self, seed: "Seed | Sequence[Seed]") -> "Sequence[Seed]":
+    def seeds(self, seed: Any) -> "Sequence[Seed]":
         """Return a seed for each world, given one for all or one each."""
         if seed is None or isinstance(seed, int | np.integer | np.random.SeedSequence):
             return [world_seed(seed, world) for world in range(self.count)]

@@ -60,7 +60,7 @@ class Lookout:
         )
         self._bearings = np.concatenate([ring.bearings for ring in layout.rings])
 
-    def slack(self, heading: FloatArray, sensors: FloatArray) -> FloatArray:
+    def slack(self, heading: FloatArray | float, sensors: FloatArray | float) -> FloatArray:
         """Return how much nearer things may be before each sensor, (..., C) [m]; infinite: behind.
 
         Beside the robot, beyond `ahead`, that is `beside`: corners pass there between two sensors.

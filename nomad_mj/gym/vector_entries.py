@@ -153,8 +153,8 @@ def _common(seen: "list[spaces.Space[Any]]") -> "spaces.Space[Any]":
     """Return a space that holds the observations of all: rooms differ in size."""
     first = seen[0]
     if isinstance(first, spaces.Dict):
-        names: list[str] = list(first.keys())
-        return spaces.Dict({name: _common([space[name] for space in seen]) for name in names})
+        parts = [space for space in seen if isinstance(space, spaces.Dict)]
+        return spaces.Dict({name: _common([part[name] for part in parts]) for name in first})
     if not isinstance(first, spaces.Box):
         return first
     boxes = [space for space in seen if isinstance(space, spaces.Box)]

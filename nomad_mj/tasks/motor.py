@@ -12,7 +12,7 @@ from nomad_mj.errors import ConfigError
 from nomad_mj.movers import Movers
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.tasks.config import MotorConfig
-from nomad_mj.tasks.physics import NavigationPhysics, Placeable
+from nomad_mj.tasks.physics import NavigationPhysics, Placeable, Posed
 from nomad_mj.tasks.ranging import Ranging
 from nomad_mj.tasks.self_sensing import SelfSensing
 from nomad_mj.tasks.starts import Start, resolve_start
@@ -204,7 +204,7 @@ class MotorTask(control.Task):
         """Where the goal is now, (2,) [m]: the one that is told, ends the episode and is drawn."""
         return self._goal.copy()
 
-    def goal_distance(self, physics: Placeable) -> float:
+    def goal_distance(self, physics: Posed) -> float:
         """Return the true distance from the robot's centre to the goal [m]."""
         pose, goal = physics.pose(), self.goal_xy
         return math.hypot(goal[0] - pose.x, goal[1] - pose.y)

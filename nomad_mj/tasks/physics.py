@@ -17,12 +17,16 @@ from nomad_mj.tasks.readout import Readout
 from nomad_mj.types import FloatArray, IntArray, Pose
 
 
-class Placeable(Protocol):
-    """What a task asks of a simulation beside its sensors."""
+class Posed(Protocol):
+    """A simulation that tells where its robot is."""
 
     def pose(self) -> Pose:
         """Return the true pose of the robot."""
         ...
+
+
+class Placeable(Posed, Protocol):
+    """What a task asks of a simulation beside its sensors."""
 
     def move_bodies(self, rows: IntArray, places: FloatArray) -> None:
         """Put mocap bodies, given their rows (n,), at places (n, 2) [m]; the next step sees it."""

@@ -29,8 +29,8 @@ class Ranging:
 
     def __init__(self, noise: RangeNoise, effects: SonarEffects, robot: RobotDescription) -> None:
         self._config = noise
-        self._rays, self._count = robot.rays, robot.layout.count
-        self._sonars = Sonars(effects, robot) if effects.active else None
+        self.rays, self.count = robot.rays, robot.layout.count
+        self.sonars = Sonars(effects, robot) if effects.active else None
 
     def start(
         self,
@@ -39,19 +39,21 @@ class Ranging:
         dropout: np.random.SeedSequence,
     ) -> None:
         """Begin an episode with streams of its own."""
-        self._noise = RangeNoiseStream(self._config, self._count, ranges)
-        if self._sonars is not None:
-            self._sonars.start(np.random.default_rng(crosstalk), np.random.default_rng(dropout))
+        self.noise = RangeNoiseStream(self._config, self.count, ranges)
+        if self.sonars is not None:
+            self.sonars.start(np.random.default_rng(crosstalk), np.random.default_rng(dropout))
 
     def read(self, cones: FloatArray) -> FloatArray:
         """Return the readings of this control step, given each cone's shortest ray, (C,) [m]."""
-        return self._tell(_within(self._hear(cones) * self._noise.factors(), self._rays))
+        return self.tell(_within(self.hear(cones) * self.noise.factors(), self.rays))
 
-    def _hear(self, cones: FloatArray) -> FloatArray:
-        return cones if self._sonars is None else self._sonars.hear(cones)
+    def hear(self, cones: FloatArray) -> FloatArray:
+        """Return what is heard before noise, (C,) [m]."""
+        return cones if self.sonars is None else self.sonars.hear(cones)
 
-    def _tell(self, ranges: FloatArray) -> FloatArray:
-        return ranges if self._sonars is None else self._sonars.tell(ranges)
+    def tell(self, ranges: FloatArray) -> FloatArray:
+        """Return what is told of noisy readings, (C,) [m]."""
+        return ranges if self.sonars is None else self.sonars.tell(ranges)
 
 
 class RangingOfMany:
@@ -65,13 +67,13 @@ class RangingOfMany:
 
     def __init__(self, robots: Sequence[Ranging]) -> None:
         self._robots = robots
-        self._rays = robots[0]._rays
-        self._affected = robots[0]._sonars is not None
-        self._noise = RangeNoiseStreams(len(robots), robots[0]._count)
+        self._rays = robots[0].rays
+        self._affected = robots[0].sonars is not None
+        self._noise = RangeNoiseStreams(len(robots), robots[0].count)
 
     def go_on(self, number: int) -> None:
         """Take over the episode of a robot, from where it is by itself."""
-        self._noise.go_on(number, self._robots[number]._noise)
+        self._noise.go_on(number, self._robots[number].noise)
 
     def read(self, numbers: IntArray, cones: FloatArray) -> FloatArray:
         """Return what `Ranging.read` does for each of some robots (n,), (n, C) [m].
@@ -86,11 +88,11 @@ class RangingOfMany:
         robots = [self._robots[number] for number in numbers.tolist()] if self._affected else []
         if robots:
             pairs = zip(robots, cones, strict=True)
-            cones = np.array([robot._hear(own) for robot, own in pairs])
+            cones = np.array([robot.hear(own) for robot, own in pairs])
         ranges = _within(cones * self._noise.factors(numbers), self._rays)
         if robots:
             pairs = zip(robots, ranges, strict=True)
-            ranges = np.array([robot._tell(own) for robot, own in pairs])
+            ranges = np.array([robot.tell(own) for robot, own in pairs])
         return ranges
 
 

@@ -53,11 +53,12 @@ CASES: dict[str, tuple[list[str], str, dict[str, Any]]] = {
 @pytest.mark.parametrize("task", LIMITS)
 def test_each_world_is_the_single_environment(task: str, case: str) -> None:
     rooms, robot, options = CASES[case]
-    environment = {"time_limit": LIMITS[task]}  # short enough for episodes to end
+    environment: dict[str, Any] = {"time_limit": LIMITS[task]}  # short enough for episodes to end
     ones = singles(task, rooms, robot, options, **environment)
     threads = [1, 2] if case in ("one room", "rooms") else [2]
+    make: Any = load_batch
     batches: list[BatchEnv] = [
-        load_batch(  # type: ignore[call-overload]
+        make(
             task,
             room=rooms,
             robot=robot,

@@ -107,22 +107,24 @@ def test_seeds_of_worlds_are_those_of_single_environments() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "says"),
+    ("method", "arguments", "says"),
     [
-        (lambda env: env.reset(starts=[0, 0, 99]), "world 2: start 99: the room's are numbered"),
-        (lambda env: env.reset(starts=["x", 0, 0]), "world 0: unknown start 'x'; there are"),
-        (lambda env: env.reset(starts=[0]), "starts: there are 1, but 3 worlds"),
-        (lambda env: env.reset(seed=-3), "seed -3: must be a whole number"),
-        (lambda env: env.reset(seed=[1, 2]), "seed: must be a whole number, or one for each of 3"),
-        (lambda env: env.reset(mask=[True]), "mask: must be 3 times True or False"),
-        (lambda env: env.step(np.zeros((3, 2)), mask=[1, 0, 0]), "mask: must be 3 times True"),
+        ("reset", {"starts": [0, 0, 99]}, "world 2: start 99: the room's are numbered"),
+        ("reset", {"starts": ["x", 0, 0]}, "world 0: unknown start 'x'; there are"),
+        ("reset", {"starts": [0]}, "starts: there are 1, but 3 worlds"),
+        ("reset", {"seed": -3}, "seed -3: must be a whole number"),
+        ("reset", {"seed": [1, 2]}, "seed: must be a whole number, or one for each of 3"),
+        ("reset", {"mask": [True]}, "mask: must be 3 times True or False"),
+        ("step", {"actions": np.zeros((3, 2)), "mask": [1, 0, 0]}, "mask: must be 3 times True"),
     ],
 )
-def test_what_is_wrong_is_told_in_a_line_and_changes_nothing(wrong: Any, says: str) -> None:
+def test_what_is_wrong_is_told_in_a_line_and_changes_nothing(
+    method: str, arguments: dict[str, Any], says: str
+) -> None:
     with load_batch(count=3, threads=1, task_kwargs={"random": 1}) as many:
         before = many.reset()
         with pytest.raises(NomadError) as caught:
-            wrong(many)
+            getattr(many, method)(**arguments)
         assert says in str(caught.value) and "\n" not in str(caught.value)
         after = many.time_step()
         for world in range(3):
