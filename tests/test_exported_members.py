@@ -43,6 +43,7 @@ PUBLIC = {
     "nomad_mj.envs": (
         "DEFAULT_ROBOT DEFAULT_ROOM TASKS PathFinding PathFindingConfig load percept_of"
     ),
+    "nomad_mj.gym": "MotorEnv NavigationEnv NavigationVectorEnv PathFindingEnv register",
 }
 ERRORS = (
     "CheckpointError ConfigError ModelError NomadError OutputError RenderError StartError "

@@ -1,5 +1,6 @@
 """Stable-Baselines3's learners behind our settings, and their actors as our policies."""
 
+import math
 import random
 from collections.abc import Callable, Generator
 from contextlib import ExitStack, contextmanager
@@ -65,7 +66,8 @@ class Learner:
         """Return the agent as it is now; it does not change when learning goes on."""
         task = task_of(self._env)
         layout, policy = task.task.scene.robot.layout, policy_of(self.model)
-        return DeepAgent(layout, task.situation, task.observation, policy, self._settings)
+        observation = "ranges" if task.observation == "ranges" else "situation"
+        return DeepAgent(layout, task.situation, observation, policy, self._settings)
 
     def learn(
         self,
@@ -124,12 +126,12 @@ def make_model(
         "policy_kwargs": {"net_arch": [*settings.hidden]},
     }
     if isinstance(settings, PpoSettings):
+        shared["policy_kwargs"]["log_std_init"] = math.log(settings.spread)
         return PPO(
             **shared,
             n_steps=settings.rollout,
             n_epochs=settings.epochs,
             gae_lambda=settings.gae_lambda,
-            ent_coef=settings.entropy,
         )
     shared |= {
         "buffer_size": settings.buffer_size,
