@@ -130,7 +130,8 @@ class MotorTask(control.Task):
         """Command the motors in the order of the drive's: see `Drive.motors`."""
         physics.command(action)
         self._observation = None
-        self.move_movers(physics)
+        if self.movers is not None:
+            self.move_movers(physics)
 
     def move_movers(self, physics: Placeable) -> None:
         """Let what moves beside the robot go on for a control step."""
@@ -217,7 +218,7 @@ class MotorTask(control.Task):
 
     def ends_at(self, distance: float) -> bool:
         """Return whether the episode ends at a true distance from the goal [m]."""
-        return self.config.ends_at_goal and self.reaches_goal(distance)
+        return self.config.ends_at_goal and distance <= self.config.goal_radius
 
     def reaches_goal(self, distance: float) -> bool:
         """Return whether a true distance from the goal [m] is near enough."""
@@ -229,4 +230,5 @@ class MotorTask(control.Task):
 
     def get_termination(self, physics: NavigationPhysics) -> float | None:
         """Return discount 0 at the goal, else None: the episode goes on."""
-        return 0.0 if self.ends_at(self.goal_distance(physics)) else None
+        ends = self.config.ends_at_goal and self.ends_at(self.goal_distance(physics))
+        return 0.0 if ends else None

@@ -109,6 +109,7 @@ class NavigationPhysics(Physics):
         self._ctrl: FloatArray = data.ctrl
         self._controls = self.robot.controls
         self._readout = Readout.of(model, self.robot)
+        self._ray_buffer = np.empty(len(self.robot.rays.address))
         self._bind_steering()
         mujoco.mj_step1(model, data)  # dm_control has just computed a copy with its motors off
 
@@ -174,7 +175,7 @@ class NavigationPhysics(Physics):
         Rays of specular rings whose echo is lost count as a miss, see `RangeNoise.grazing`; those
         of infrared rings are as long as the light makes them seem, see `InfraredEffects`.
         """
-        distances = self._readout.distances(self._sensordata, self.grazing)
+        distances = self._readout.distances(self._sensordata, self.grazing, self._ray_buffer)
         if self.infrared is not None:
             self.infrared.judge(distances, *self._raw)
         return self._readout.cones(distances)

@@ -45,6 +45,8 @@ class Ranging:
 
     def read(self, cones: FloatArray) -> FloatArray:
         """Return the readings of this control step, given each cone's shortest ray, (C,) [m]."""
+        if self.sonars is None:
+            return _within(cones * self.noise.factors(), self.rays)
         return self.tell(_within(self.hear(cones) * self.noise.factors(), self.rays))
 
     def hear(self, cones: FloatArray) -> FloatArray:

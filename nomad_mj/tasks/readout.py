@@ -74,7 +74,9 @@ class Readout:
             angles=self.angles + qpos,
         )
 
-    def distances(self, sensordata: FloatArray, grazing: float | None = None) -> FloatArray:
+    def distances(
+        self, sensordata: FloatArray, grazing: float | None = None, out: FloatArray | None = None
+    ) -> FloatArray:
         """Return how far each ray goes from its site, (..., R) [m]; `_MISS`: it hits nothing.
 
         Parameters
@@ -83,8 +85,11 @@ class Readout:
             The engine's.
         grazing : float, optional
             As of `RangeNoise`: a specular ray whose echo is lost counts as a miss.
+        out : array (..., R), optional
+            To put them into.
         """
-        values = sensordata.take(self.rays.address, axis=-1, mode="clip")
+        # mode="clip": without a check of the indices, which would go through another buffer.
+        values = sensordata.take(self.rays.address, -1, out, "clip")
         np.copyto(values, _MISS, where=values < 0)
         if grazing is not None:
             specular = self.rays.specular
@@ -98,14 +103,14 @@ class Readout:
     def cones(self, distances: FloatArray) -> FloatArray:
         """Return each cone's shortest ray, (..., C) [m] from the perimeter; a miss: `_MISS`."""
         rays = self.rays
-        cones = np.minimum.reduceat(distances, rays.first, axis=-1)
+        cones = np.minimum.reduceat(distances, rays.first, -1)
         # The engine cuts what lies farther off to the maximum.
         np.copyto(cones, _MISS, where=cones >= rays.maximum)
         return np.subtract(cones, rays.offset, out=cones)
 
     def bumpers(self, history: FloatArray) -> FloatArray:
         """Return 1 for each bumper touched in the control step, else 0, (..., B)."""
-        forces = history.take(self.touch, axis=-1)
+        forces = history.take(self.touch, -1)
         if not np.count_nonzero(forces):
             return np.zeros((*forces.shape[:-2], forces.shape[-1]))
         return np.logical_or.reduce(forces, axis=-2).astype(np.float64)
