@@ -1,9 +1,17 @@
 """Agents by name, and configurations by name."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from nomad_agents.agent import Agent
-from nomad_agents.baselines import Planner, Straight
+from nomad_agents.baselines import (
+    DynamicWindow,
+    Planner,
+    PotentialField,
+    RandomMoves,
+    Straight,
+    VectorFieldHistogram,
+)
 from nomad_agents.checkpoint import checkpoint_of, read_npz
 from nomad_agents.deep import LEARNERS
 from nomad_agents.deep.file import FORMAT, deep_of
@@ -11,8 +19,14 @@ from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner, ReactivePlan
 from nomad_mj.errors import CheckpointError, ConfigError, UnknownNameError
 from nomad_mj.types import SensorLayout
 
-AGENTS: dict[str, type[ReactivePlanner] | type[Planner] | type[Straight]] = {
-    agent.name: agent for agent in (ReactivePlanner, Planner, Straight)
+AGENTS: dict[str, Callable[[SensorLayout, ReactivePlannerConfig], Agent]] = {
+    ReactivePlanner.name: ReactivePlanner,
+    Planner.name: Planner,
+    Straight.name: Straight,
+    RandomMoves.name: RandomMoves,
+    VectorFieldHistogram.name: VectorFieldHistogram,
+    PotentialField.name: PotentialField,
+    DynamicWindow.name: DynamicWindow,
 }
 
 

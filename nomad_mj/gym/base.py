@@ -4,7 +4,6 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any, SupportsFloat
 
-import dm_env
 import gymnasium
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +12,7 @@ from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import ConfigError
+from nomad_mj.gym.account import Account, Measures
 from nomad_mj.gym.camera import Camera
 from nomad_mj.gym.observations import Observer
 from nomad_mj.gym.reward import RewardOptions
@@ -20,7 +20,6 @@ from nomad_mj.tasks import MotorEnvironment, MotorTask, NavigationPhysics
 
 Action = npt.NDArray[np.floating[Any]]
 _RESET_OPTIONS = ("start",)
-_SUMMED = ("cost", "driven", "duration")
 
 
 class NavigationEnv(gymnasium.Env[Any, Action]):
@@ -34,6 +33,8 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         Makes the observations.
     reward : RewardOptions
         What the reward is made of.
+    measures : callable
+        What `info` tells of a step.
     actions : int
         Length of an action, whose components lie in [-1, 1].
     render_mode : str, optional
@@ -56,6 +57,7 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         env: PathFinding | MotorEnvironment,
         observer: Observer,
         reward: RewardOptions,
+        measures: Measures,
         actions: int,
         render_mode: str | None,
         camera: Camera,
@@ -64,14 +66,13 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
             raise ConfigError(f"render mode {render_mode!r}: must be 'rgb_array' or None")
         self.render_mode = render_mode
         self.environment = env
-        self._observer, self._reward, self._camera = observer, reward, camera
+        self._camera = camera
+        self._account = Account(self.task, env.physics, observer, reward, measures)
         self.observation_space = observer.space
         self.action_space = spaces.Box(-1.0, 1.0, (actions,), np.float32)
         self.seen: Mapping[str, Any] | None = None
         self._over = self._closed = False
-        self._distance = 0.0
         self._steps = 0
-        self._totals: dict[str, float] = dict.fromkeys(_SUMMED, 0.0)
 
     @property
     def task(self) -> MotorTask:
@@ -120,11 +121,9 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
                 raise ConfigError(f"unknown reset option {name!r}; there is: start")
         step = self.environment.reset(seed, options.get("start"))
         self.seen, self._over, self._steps = step.observation, False, 0
-        self._totals = dict.fromkeys(_SUMMED, 0.0)
-        self._distance = self.task.goal_distance(self.physics)
         if self.render_mode is not None:
             self._camera.begin(self.physics)
-        return self._observer(step.observation, True), self._info(step)
+        return self._account.begin(step)
 
     def step(self, action: Action) -> tuple[Any, SupportsFloat, bool, bool, dict[str, Any]]:
         """Act; return observation, reward, terminated, truncated, info.
@@ -150,35 +149,13 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         step = self.environment.step(self._command(action.clip(-1.0, 1.0)))
         self.seen, self._over = step.observation, step.last()
         self._steps += 1
-        before, self._distance = self._distance, self.task.goal_distance(self.physics)
         if self.render_mode is not None:
             self._camera.follow(self.physics)
-        info = self._info(step)
-        terminated = step.last() and step.discount == 0.0
-        reward = self._reward.total(float(step.reward), info["is_success"], before - self._distance)
-        observed = self._observer(step.observation, False)
-        return observed, reward, terminated, step.last() and not terminated, info
+        return self._account.go_on(step)
 
     @abstractmethod
     def _command(self, action: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the action of the environment below."""
-
-    @abstractmethod
-    def _measures(self, step: dm_env.TimeStep) -> dict[str, Any]:
-        """Return what `info` tells of this step alone; at least cost, driven and duration."""
-
-    def _info(self, step: dm_env.TimeStep) -> dict[str, Any]:
-        """Return measures, costs and the truth, the same keys in every step."""
-        measures = self._measures(step)
-        for name in _SUMMED:
-            self._totals[name] += measures[name]
-        return {
-            **measures,
-            "goal_distance": self._distance,
-            "pose": np.array(self.physics.pose()),
-            "is_success": bool(self._distance <= self.task.config.goal_radius),
-            **{f"total_{name}": value for name, value in self._totals.items()},
-        }
 
     def render(self) -> npt.NDArray[np.uint8] | None:  # type: ignore[override]
         """Return a picture of the present state, (height, width, 3); None without a render mode.
@@ -193,7 +170,7 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
             return None
         if self.seen is None:
             raise ResetNeeded("there is nothing to draw before the first reset()")
-        fields = (("step", str(self._steps)), ("cost", f"{self._totals['cost']:g}"))
+        fields = (("step", str(self._steps)), ("cost", f"{self._account.totals['cost']:g}"))
         elapsed = 1.0 / self.metadata["render_fps"]
         return self._camera.picture(self.physics, self.seen, elapsed, fields)
 

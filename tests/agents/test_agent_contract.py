@@ -17,6 +17,8 @@ from nomad_mj.errors import UnknownNameError
 from nomad_mj.perception import Percept
 from nomad_mj.types import FloatArray, SensorLayout
 
+# Agents that remember, within an episode, what they did or saw there.
+REMEMBERS = ("random", "vfh", "potential", "dwa")
 CASES = [(name, config) for name in AGENTS for config in CONFIGS]
 
 
@@ -29,6 +31,11 @@ def percepts(see: See, agent: Agent, count: int = 40) -> list[Percept]:
 def memory(agent: Agent) -> dict[str, Any]:
     """Return all that an agent holds, down to the bits."""
     state = {k: v for k, v in vars(agent).items() if k != "network"}
+    for key, value in state.items():
+        if isinstance(value, np.random.Generator):
+            state[key] = value.bit_generator.state
+        elif isinstance(value, np.ndarray):
+            state[key] = value.tobytes()
     if isinstance(agent, ReactivePlanner):
         state |= {k: v.tobytes() for k, v in agent.network.arrays().items()}
     return {key: repr(value) for key, value in state.items()}
@@ -61,7 +68,20 @@ def test_actions_are_two_finite_numbers_in_range(
 
 
 @pytest.mark.parametrize(("name", "config"), CASES)
-def test_a_greedy_agent_is_unchanged_and_repeats_itself(
+def test_a_greedy_agent_repeats_an_episode_and_keeps_nothing_of_it(
+    see: See, layout: SensorLayout, name: str, config: str
+) -> None:
+    agent = experienced(see, layout, name, config)
+    agent.start_episode(np.random.default_rng(5))
+    before, seen = memory(agent), percepts(see, agent)
+    first = [agent.act(percept, None).action.tobytes() for percept in seen]
+    agent.start_episode(np.random.default_rng(5))
+    assert memory(agent) == before
+    assert [agent.act(percept, None).action.tobytes() for percept in seen] == first
+
+
+@pytest.mark.parametrize(("name", "config"), [c for c in CASES if c[0] not in REMEMBERS])
+def test_a_greedy_agent_without_a_memory_of_the_episode_is_unchanged_by_it(
     see: See, layout: SensorLayout, name: str, config: str
 ) -> None:
     agent = experienced(see, layout, name, config)
@@ -70,6 +90,17 @@ def test_a_greedy_agent_is_unchanged_and_repeats_itself(
     first = [agent.act(percept, None).action.tobytes() for percept in seen]
     assert memory(agent) == before
     assert [agent.act(percept, None).action.tobytes() for percept in reversed(seen)] == first[::-1]
+
+
+@pytest.mark.parametrize("name", REMEMBERS)
+def test_an_agent_that_remembers_does_change_within_an_episode(
+    see: See, layout: SensorLayout, name: str
+) -> None:
+    agent = make_agent(name, layout, find_config("faithful"))
+    agent.start_episode(np.random.default_rng(5))
+    before = memory(agent)
+    agent.act(see(), None)
+    assert memory(agent) != before
 
 
 @pytest.mark.parametrize(("name", "config"), CASES)
@@ -86,15 +117,18 @@ def test_who_changes_a_decision_does_not_change_the_agent(
 ) -> None:
     agent = experienced(see, layout, name, "faithful")
     percept = see()
+    agent.start_episode(np.random.default_rng(5))
     first = agent.act(percept, None)
     kept = first.action.copy()
     if first.action.flags.writeable:
         first.action[:] = 0.123
+    agent.start_episode(np.random.default_rng(5))
     assert np.array_equal(agent.act(percept, None).action, kept)
 
 
 def test_unknown_names_list_what_there_is(layout: SensorLayout) -> None:
-    with pytest.raises(UnknownNameError, match=r"there are: planner, reactive_planner, straight$"):
+    names = "dwa, planner, potential, random, reactive_planner, straight, vfh"
+    with pytest.raises(UnknownNameError, match=rf"there are: {names}$"):
         make_agent("nobody", layout, find_config("faithful"))
     with pytest.raises(UnknownNameError, match=r"there are: faithful, tuned$"):
         find_config("best")

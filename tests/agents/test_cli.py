@@ -21,6 +21,7 @@ from nomad_agents.cli.main import main
 from nomad_agents.cli.record import Record
 from nomad_agents.cli.train import Train
 from nomad_agents.cli.view import View
+from nomad_agents.registry import AGENTS
 
 GOLDEN = str(Path(__file__).parent / "data" / "checkpoint_v1.npz")
 COMMANDS: dict[str, type[Any]] = {
@@ -151,7 +152,7 @@ def test_train_names_its_file_in_a_folder(run: Run, small_room: Path, tmp_path: 
     assert [file.name for file in tmp_path.iterdir()] == ["small_reactive_planner_4.npz"]
 
 
-@pytest.mark.parametrize("agent", ["planner", "straight", "reactive_planner", GOLDEN])
+@pytest.mark.parametrize("agent", [*AGENTS, GOLDEN])
 def test_evaluate_prints_one_line_of_json_last(run: Run, agent: str) -> None:
     said = run(
         "evaluate", "--agent", agent, "--starts", 2, "--max-decisions", 4, "--seed", 3, "--json"

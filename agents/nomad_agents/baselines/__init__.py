@@ -1,43 +1,20 @@
 """Agents to compare with: they learn nothing."""
 
-import numpy as np
+from nomad_agents.baselines.dwa import DwaConfig, DynamicWindow
+from nomad_agents.baselines.planner import Planner
+from nomad_agents.baselines.potential import PotentialConfig, PotentialField
+from nomad_agents.baselines.random_moves import RandomMoves
+from nomad_agents.baselines.straight import Straight
+from nomad_agents.baselines.vfh import VectorFieldHistogram, VfhConfig
 
-from nomad_agents.agent import Agent, Decision
-from nomad_agents.reactive_planner.config import ReactivePlannerConfig
-from nomad_agents.reactive_planner.planner import plan
-from nomad_mj.perception import Percept
-from nomad_mj.types import SensorLayout
-
-
-class Straight(Agent):
-    """Goes straight to the goal, whatever is in the way."""
-
-    name = "straight"
-
-    def __init__(self, layout: SensorLayout, config: ReactivePlannerConfig) -> None:
-        super().__init__(layout, config.situation)
-
-    def act(self, percept: Percept, explore: np.random.Generator | None) -> Decision:
-        """Return the move towards the goal."""
-        return Decision(np.array([1.0, 0.0]), "reacted")
-
-
-class Planner(Agent):
-    """Asks the reactive planner's planner at every decision."""
-
-    name = "planner"
-
-    def __init__(self, layout: SensorLayout, config: ReactivePlannerConfig) -> None:
-        super().__init__(layout, config.situation)
-        self.config = config
-
-    def act(self, percept: Percept, explore: np.random.Generator | None) -> Decision:
-        """Return the best of the planner's 80 actions."""
-        config = self.config
-        best = plan(
-            percept, self.layout.radius, config.situation.grid, config.action, config.planner
-        )
-        return Decision(best.action, "planned")
-
-
-__all__ = ["Planner", "Straight"]
+__all__ = [
+    "DwaConfig",
+    "DynamicWindow",
+    "Planner",
+    "PotentialConfig",
+    "PotentialField",
+    "RandomMoves",
+    "Straight",
+    "VectorFieldHistogram",
+    "VfhConfig",
+]

@@ -38,7 +38,7 @@ class Evaluate(TaskOptions):
     """Run an agent greedily from many starts and measure how it does."""
 
     agent: str = "planner"
-    """Checkpoint, .npz, or name of an agent."""
+    """Checkpoint, .npz, or name of an agent; `nomad-mj list` tells the names."""
     config: str = "faithful"
     """Parameters of an agent given by name, faithful or tuned; a checkpoint has its own."""
     starts: str = "200"

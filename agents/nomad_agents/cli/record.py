@@ -17,7 +17,7 @@ class Record(TaskOptions):
     """Record an agent on video, MP4: the room, the sensors, what it perceives and decides."""
 
     agent: str = "planner"
-    """Checkpoint, .npz, or name of an agent."""
+    """Checkpoint, .npz, or name of an agent; `nomad-mj list` tells the names."""
     config: str = "faithful"
     """Parameters of an agent given by name, faithful or tuned; a checkpoint has its own."""
     starts: str = "1"

@@ -24,7 +24,8 @@ class View(TaskOptions):
     """Name or number of a start of the room's, or X,Y[,HEADING] in metres and degrees; by default
     one at random."""
     agent: str = ""
-    """Checkpoint, .npz, or name of an agent that drives until a key is pressed."""
+    """Checkpoint, .npz, or name of an agent, as of `nomad-mj list`, that drives until a key is
+    pressed."""
     config: str = "faithful"
     """Parameters of an agent given by name, faithful or tuned; a checkpoint has its own."""
     seed: int = 0
