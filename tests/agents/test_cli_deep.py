@@ -24,7 +24,7 @@ ROBOT = ["--robot", "omnibot"]  # the one that is simulated fastest
         (["--agent", "sac", "--observation", "smell"], "must be one of: situation, ranges"),
         (["--agent", "sac", "--decisions", "0"], "decisions 0: must be 1 or more"),
         (["--agent", "sac", "--seed", "-1"], "seed -1: must be 0 or more"),
-        (["--agent", "sca"], "unknown agent 'sca'; there are: CHECKPOINT.npz, planner, ppo, "),
+        (["--agent", "sca"], "unknown agent 'sca'; there are: CHECKPOINT.npz, "),
         (["--agent", "planner"], "try 'reactive_planner', or anew sac or td3 or ppo"),
     ],
 )
