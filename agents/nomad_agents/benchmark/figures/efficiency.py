@@ -80,7 +80,7 @@ def _draw(axes: Axes, curve: Efficiency, seen: Look, last: float, *, thin: bool 
 def _name_levels(axes: Axes, levels: Mapping[str, float]) -> None:
     """Name the levels beside the figure, none over another."""
     ordered = sorted(levels.items(), key=lambda item: item[1])
-    for (label, level), place in zip(ordered, _spread_out([v for _, v in ordered]), strict=True):
+    for (label, level), place in zip(ordered, spread_out([v for _, v in ordered]), strict=True):
         axes.annotate(
             spoken(label),
             (1.0, 100 * level),
@@ -93,7 +93,7 @@ def _name_levels(axes: Axes, levels: Mapping[str, float]) -> None:
         )
 
 
-def _spread_out(levels: Sequence[float]) -> list[float]:
+def spread_out(levels: Sequence[float]) -> list[float]:
     """Return places [%] near rising levels, far enough from each other and not above all."""
     places: list[float] = []
     for level in levels:
