@@ -5,6 +5,7 @@ from nomad_mj._gl import choose_backend
 choose_backend()  # before anything imports mujoco or dm_control, which read MUJOCO_GL only once
 
 from nomad_mj.assets import list_robots, list_rooms  # noqa: E402
+from nomad_mj.batch import BatchMotor, BatchPathFinding, BatchTimeStep, load_batch  # noqa: E402
 from nomad_mj.envs import PathFinding, PathFindingConfig, load  # noqa: E402
 from nomad_mj.errors import NomadError  # noqa: E402
 from nomad_mj.motion import Outcome  # noqa: E402
@@ -25,6 +26,9 @@ from nomad_mj.tasks import (  # noqa: E402
 __version__ = "0.1.0"
 
 __all__ = [
+    "BatchMotor",
+    "BatchPathFinding",
+    "BatchTimeStep",
     "BumperNoise",
     "Crosstalk",
     "FiringOrder",
@@ -45,4 +49,5 @@ __all__ = [
     "list_robots",
     "list_rooms",
     "load",
+    "load_batch",
 ]

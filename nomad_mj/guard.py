@@ -8,17 +8,24 @@ from nomad_mj.errors import ModelError
 
 _MOST_ELEMENTS = 200_000  # once everything is replicated
 _MOST_COPIES = 5_000  # the engine takes a time that grows with the square of them
+_MOST_FLEX = 1_000  # points of soft things, which take the engine longer still
 _MOST_CELLS = 100_000_000  # of a texture or a height field
 _LARGEST = 20_000_000  # bytes of a file
 _DEEPEST = 40  # includes within includes
-# Attributes whose product is a size, and which elements they belong to.
-_SIZES = {
-    "texture": ("width", "height"),
-    "hfield": ("nrow", "ncol"),
-    "composite": ("count",),
-    "flexcomp": ("count",),
+_NUSER = tuple(
+    f"nuser_{kind}"
+    for kind in ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor")
+)
+_MOST_VALUES = 1_000_000  # that each body, keyframe or sensor is to keep for its user
+# Attributes whose product is a size, which elements they belong to, and the most of it.
+_SIZES: dict[str, tuple[tuple[tuple[str, ...], int], ...]] = {
+    "texture": ((("width", "height"), _MOST_CELLS),),
+    "hfield": ((("nrow", "ncol"), _MOST_CELLS),),
+    "composite": ((("count",), _MOST_COPIES),),
+    "flexcomp": ((("count",), _MOST_FLEX),),
+    "user": ((("dim",), _MOST_VALUES),),
+    "size": tuple(((name,), _MOST_VALUES) for name in ("nkey", "nuserdata", *_NUSER)),
 }
-_MOST = {"composite": _MOST_COPIES, "flexcomp": _MOST_COPIES}
 
 
 def check_size(kind: str, path: Path) -> None:
@@ -64,16 +71,13 @@ def _count_file(path: Path, above: tuple[Path, ...]) -> float:
 
 def _count(element: ElementTree.Element, path: Path, above: tuple[Path, ...]) -> float:
     """Return how many elements one becomes."""
-    if element.tag == "include":
+    if element.tag == "include" or (element.tag == "model" and element.get("file")):
         return _count_file(path.parent / element.get("file", ""), (*above, path))
-    size = math.prod(
-        _number(part)
-        for name in _SIZES.get(element.tag, ())
-        for part in element.get(name, "1").split()
-    )
-    most = _MOST.get(element.tag, _MOST_CELLS)
-    if size > most:
-        raise ModelError(f"has a {element.tag} of {size:.3g} cells; at most {most}")
+    for names, most in _SIZES.get(element.tag, ()):
+        size = math.prod(_number(part) for name in names for part in element.get(name, "1").split())
+        if size > most:
+            what = " x ".join(names)
+            raise ModelError(f"has a {element.tag} of {size:.3g} cells ({what}); at most {most}")
     inside = sum(_count(child, path, above) for child in element)
     if element.tag != "replicate":
         return 1.0 + inside

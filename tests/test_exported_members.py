@@ -7,13 +7,17 @@ import pytest
 
 PUBLIC = {
     "nomad_mj": (
-        "BumperNoise Crosstalk FiringOrder Gyroscope InfraredEffects MotorConfig MotorEnvironment "
-        "MovingGoal MovingObstacles NomadError OdometryNoise Outcome PathFinding PathFindingConfig "
-        "RangeNoise SonarEffects Walkers list_robots list_rooms load"
+        "BatchMotor BatchPathFinding BatchTimeStep BumperNoise Crosstalk FiringOrder Gyroscope "
+        "InfraredEffects MotorConfig MotorEnvironment MovingGoal MovingObstacles NomadError "
+        "OdometryNoise Outcome PathFinding PathFindingConfig RangeNoise SonarEffects Walkers "
+        "list_robots list_rooms load load_batch"
+    ),
+    "nomad_mj.batch": (
+        "BatchEnvironment BatchMotor BatchPathFinding BatchTimeStep Worlds load_batch world_seed"
     ),
     "nomad_mj.perception": (
-        "GridSpec Percept SituationSpec attraction_force cell_centres certainty_grid code_grid "
-        "code_signal perceive pool"
+        "OBSERVATIONS GridSpec Observation Percept SituationSpec attraction_force cell_centres "
+        "certainty_grid code_grid code_percept code_ranges code_signal coded_size perceive pool"
     ),
     "nomad_mj.motion": (
         "SAFE_CLEARANCE ActionSpec CarDrive Drive MotionConfig Move Outcome StraightMove "
@@ -25,8 +29,9 @@ PUBLIC = {
         "add_obstacles place_goal read_moving"
     ),
     "nomad_mj.rooms": (
-        "Box Cylinder FREE OCCUPIED Occupancy Polygon Room UNKNOWN furnish maze_room merge_cells "
-        "random_room read_floor_image read_plan read_room read_ros_map room_of_map to_mjcf"
+        "Box Cylinder FREE OCCUPIED Occupancy Polygon Room UNKNOWN concave_room convex_room "
+        "furnish maze_room merge_cells random_room read_floor_image read_plan read_room "
+        "read_ros_map room_of_map to_mjcf wide_room"
     ),
     "nomad_mj.robots": (
         "PREFIX RayIndex RobotDescription Sheet adopt describe_robot find_sheet group_rays reach "
@@ -36,7 +41,10 @@ PUBLIC = {
         "BumperNoise Crosstalk FiringOrder Gyroscope InfraredEffects MotorConfig MotorEnvironment "
         "MotorTask NavigationPhysics OdometryNoise RangeNoise SonarEffects Start resolve_start"
     ),
-    "nomad_mj.envs": "DEFAULT_ROBOT DEFAULT_ROOM TASKS PathFinding PathFindingConfig load",
+    "nomad_mj.envs": (
+        "DEFAULT_ROBOT DEFAULT_ROOM TASKS PathFinding PathFindingConfig load percept_of"
+    ),
+    "nomad_mj.gym": "MotorEnv NavigationEnv NavigationVectorEnv PathFindingEnv register",
 }
 ERRORS = (
     "CheckpointError ConfigError ModelError NomadError OutputError RenderError StartError "

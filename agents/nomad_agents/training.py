@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from nomad_agents.episode import run_episode
+from nomad_agents.episode import Watcher, run_episode
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import ConfigError, StartError
@@ -125,6 +125,7 @@ def train(
     config: TrainingConfig,
     training: Training,
     after_episode: Callable[[Training], None] | None = None,
+    watch: Watcher | None = None,
 ) -> Training:
     """Train until done or given up; `training` says from where on, and is brought up to date.
 
@@ -139,6 +140,8 @@ def train(
     after_episode : callable, optional
         Called after each episode: to show progress, to save; what it raises ends the training
         between two episodes.
+    watch : callable, optional
+        Looks on while learning, as of `run_episode`.
     """
     starts = config.chosen(len(env.scene.arena.starts))
     while not training.done and training.passes <= config.max_passes:
@@ -150,7 +153,7 @@ def train(
             if training.testing:
                 _test(env, agent, config, training, starts)
             else:
-                _learn(env, agent, config, training, starts)
+                _learn(env, agent, config, training, starts, watch)
             _advance(training, len(starts), config.min_passes)
         except BaseException:  # half an episode learnt would not go on to the same bits
             vars(training).update(vars(before[0]))
@@ -169,6 +172,7 @@ def _learn(
     config: TrainingConfig,
     training: Training,
     starts: tuple[int, ...],
+    watch: Watcher | None,
 ) -> None:
     place = (training.passes, training.next_start)
     episode = run_episode(
@@ -178,6 +182,7 @@ def _learn(
         start=starts[training.next_start],
         explore=np.random.default_rng(stream(config.seed, _EXPLORE, *place)),
         max_decisions=config.episode_decisions,
+        watch=watch,
     )
     training.decisions += episode.decisions
     training.reactions += episode.reactions

@@ -1,26 +1,20 @@
 """Path finding: the decision level of the paper, a `dm_env` environment above the motor task."""
 
-import math
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from dataclasses import dataclass, field
+from typing import Any
 
 import dm_env
 import numpy as np
 from dm_env import specs
 
+from nomad_mj.envs.driving import Driving, Lookout, Move, asked_move, reward_of
 from nomad_mj.errors import ConfigError
-from nomad_mj.motion import (
-    ActionSpec,
-    MotionConfig,
-    Outcome,
-    displacement,
-    reinforcement,
-)
+from nomad_mj.motion import ActionSpec, MotionConfig, Outcome
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.tasks import MotorEnvironment, NavigationPhysics, Start
-from nomad_mj.types import FloatArray, IntArray, Travel
+from nomad_mj.types import FloatArray
 
 
 @dataclass(frozen=True)
@@ -39,18 +33,19 @@ class PathFindingConfig:
     motion: MotionConfig = field(default_factory=MotionConfig)
 
 
-class Move(NamedTuple):
-    """What became of a move: distances in metres, `ticks` control steps."""
-
-    outcome: Outcome
-    clearance: float
-    driven: float = 0.0
-    ticks: int = 0
+def move_spec() -> specs.BoundedArray:
+    """Return the limits of an action: (dx, dy) in [-1, 1]."""
+    return specs.BoundedArray((2,), np.float64, -1.0, 1.0, name="move")
 
 
-def _see_in_time(config: MotionConfig, nearest: float) -> MotionConfig:
-    """Return a config whose security distance the sensors can tell: they read no less [m]."""
-    return replace(config, security_distance=max(config.security_distance, 1.1 * nearest))
+def told_of_moves(motion: MotionConfig) -> "OrderedDict[str, specs.Array]":
+    """Return the shapes and limits of what is told of a move."""
+    return OrderedDict(
+        duration=specs.BoundedArray((), np.float64, 0.0, motion.longest, name="duration"),
+        driven=specs.BoundedArray((), np.float64, 0.0, np.inf, name="driven"),
+        clearance=specs.BoundedArray((), np.float64, 0.0, np.inf, name="clearance"),
+        outcome=specs.DiscreteArray(len(Outcome), np.int32, name="outcome"),
+    )
 
 
 class PathFinding(dm_env.Environment):
@@ -87,9 +82,7 @@ class PathFinding(dm_env.Environment):
         self.config = config or PathFindingConfig()
         self.on_control_step: Callable[[dm_env.TimeStep], None] | None = None
         self._time_limit = time_limit
-        layout = self.scene.robot.layout
-        self._motion = _see_in_time(self.config.motion, min(r.min_range for r in layout.rings))
-        self._bearings = np.concatenate([ring.bearings for ring in layout.rings])
+        self._lookout = Lookout(self.scene.robot.layout, self.config.motion)
         self._over = True
         self._ticks = 0
         self._inner: dm_env.TimeStep | None = None
@@ -106,7 +99,7 @@ class PathFinding(dm_env.Environment):
 
     def action_spec(self) -> specs.BoundedArray:
         """Return (dx, dy) in [-1, 1]."""
-        return specs.BoundedArray((2,), np.float64, -1.0, 1.0, name="move")
+        return move_spec()
 
     def reward_spec(self) -> specs.BoundedArray:
         """Return z in [-1, 0]; lower if moves can be longer than 1 m."""
@@ -116,11 +109,7 @@ class PathFinding(dm_env.Environment):
     def observation_spec(self) -> "OrderedDict[str, specs.Array]":
         """Return the motor task's observations and what is told of the move."""
         result = OrderedDict(self.motor.observation_spec())
-        limit = self.config.motion.longest
-        result["duration"] = specs.BoundedArray((), np.float64, 0.0, limit, name="duration")
-        result["driven"] = specs.BoundedArray((), np.float64, 0.0, np.inf, name="driven")
-        result["clearance"] = specs.BoundedArray((), np.float64, 0.0, np.inf, name="clearance")
-        result["outcome"] = specs.DiscreteArray(len(Outcome), np.int32, name="outcome")
+        result.update(told_of_moves(self.config.motion))
         return result
 
     def reset(
@@ -137,18 +126,14 @@ class PathFinding(dm_env.Environment):
         """Carry out one move and return what became of it."""
         if self._over or self._inner is None:
             return self.reset()
-        action = np.asarray(action, dtype=np.float64)
-        if action.shape != (2,) or not np.isfinite(action).all():
-            raise ValueError(f"action {action}: must be two finite numbers (dx, dy) in [-1, 1]")
         goal: FloatArray = self._inner.observation["goal"]
-        move = displacement(np.clip(action, -1.0, 1.0), goal, self.config.action)
+        move = asked_move(action, goal, self.config.action)
         done = self._carry_out(move)
         self._ticks += done.ticks
-        collided = done.outcome in (Outcome.VIRTUAL_COLLISION, Outcome.BUMPED)
-        reward = float(reinforcement(move, goal, done.clearance, collided))
+        reward = reward_of(done, move, goal)
         observation = self._observe(done)
         task = self.motor.task
-        if task.goal_distance(self.physics) <= task.config.goal_radius:
+        if task.reaches_goal(task.goal_distance(self.physics)):
             self._over = True
             return dm_env.termination(reward, observation)
         if self._ticks * CONTROL_TIMESTEP >= self._time_limit:
@@ -158,51 +143,26 @@ class PathFinding(dm_env.Environment):
 
     def _carry_out(self, move: FloatArray) -> Move:
         """Drive a displacement (2,) [m]."""
-        task = self.motor.task
-        x, y = move.tolist()
-        heading = float(np.arctan2(y, x))
-        travel = self._facing(Travel(0.0, 0.0, 0.0, 0.0))
-        drive = self.scene.robot.drive.move(
-            heading, float(np.hypot(x, y)), travel, self._motion, CONTROL_TIMESTEP
-        )
-        watched = (drive.motion_heading, travel.sensors)
-        ahead, slack = self._ahead(*watched)
-        driven, ticks = 0.0, 0
-        clearance = np.inf  # until the move is under way
         assert self._inner is not None
-        bumped = bool(self._inner.observation["bumpers"].any())
+        task, lookout = self.motor.task, self._lookout
+        told = self._inner.observation
+        bumped = bool(told["bumpers"].any())
+        driving = Driving(move, self.scene.robot, lookout.motion, told["odometry"], bumped)
+        watched, slack = None, np.zeros(0)
         while True:
-            if (drive.motion_heading, travel.sensors) != watched:
-                watched = (drive.motion_heading, travel.sensors)
-                ahead, slack = self._ahead(*watched)
-            free = float(np.minimum.reduce(task.ranges.take(ahead) + slack, initial=np.inf))
-            command = drive.command(travel, free, bumped)
-            if drive.done:
-                return Move(drive.outcome, clearance, driven, ticks)
+            if driving.watched != watched:
+                watched = driving.watched
+                slack = lookout.slack(*watched)
+            command = driving.command(float(np.minimum.reduce(task.ranges + slack)))
+            if command is None:
+                return driving.result()
             self._inner = self.motor.step(command)
-            bumped = bool(np.count_nonzero(self._inner.observation["bumpers"]))
-            travel = self._facing(task.travel)
-            clearance = min(clearance, float(np.minimum.reduce(task.ranges)))
-            driven += math.hypot(travel.forward, travel.sideways)
-            ticks += 1
+            told = self._inner.observation
+            bumped = bool(np.count_nonzero(told["bumpers"]))
+            nearest = float(np.minimum.reduce(task.ranges))
+            driving.take_in(task.travel, told["odometry"], nearest, bumped)
             if self.on_control_step is not None:
                 self.on_control_step(self._inner)
-
-    def _facing(self, travel: Travel) -> Travel:
-        """Return a way with the directions that odometry tells."""
-        assert self._inner is not None
-        _, _, heading, sensors = self._inner.observation["odometry"].tolist()
-        return travel._replace(heading=heading, sensors=sensors)
-
-    def _ahead(self, heading: float, sensors: float) -> tuple[IntArray, FloatArray]:
-        """Return the sensors that look before the robot, and how much nearer things may be there.
-
-        Beside it, beyond `ahead`, that is `beside` [m]: corners pass there between two sensors.
-        """
-        off = np.abs((self._bearings + sensors - heading + np.pi) % (2 * np.pi) - np.pi)
-        before = np.flatnonzero(off <= max(np.pi / 2, self._motion.ahead) + 1e-9)
-        slack = np.where(off[before] <= self._motion.ahead + 1e-9, 0.0, self._motion.beside)
-        return before, slack
 
     def _observe(self, move: Move) -> "OrderedDict[str, Any]":
         assert self._inner is not None

@@ -1,58 +1,25 @@
 """What both Gymnasium environments share: episodes, seeds, rewards, costs and pictures."""
 
 from abc import abstractmethod
-from collections import OrderedDict
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, Literal, SupportsFloat
+from collections.abc import Mapping, Sequence
+from typing import Any, SupportsFloat
 
-import dm_env
 import gymnasium
 import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
-from gymnasium.error import ResetNeeded
+from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import ConfigError
+from nomad_mj.gym.account import Account, Measures
 from nomad_mj.gym.camera import Camera
 from nomad_mj.gym.observations import Observer
+from nomad_mj.gym.reward import RewardOptions
 from nomad_mj.tasks import MotorEnvironment, MotorTask, NavigationPhysics
 
 Action = npt.NDArray[np.floating[Any]]
 _RESET_OPTIONS = ("start",)
-_SUMMED = ("cost", "driven", "duration")
-
-
-@dataclass(frozen=True)
-class RewardOptions:
-    """What the reward is made of; their sum is paid.
-
-    Attributes
-    ----------
-    reward : "task" or "sparse"
-        That of the task below, or 1 at the goal and 0 elsewhere.
-    goal_bonus : float
-        Paid beside it when the goal is reached.
-    progress : float
-        Paid for each metre that the robot's true distance to the goal has become shorter.
-    """
-
-    reward: Literal["task", "sparse"] = "task"
-    goal_bonus: float = 0.0
-    progress: float = 0.0
-
-    def __post_init__(self) -> None:
-        if self.reward not in ("task", "sparse"):
-            raise ConfigError(f"reward {self.reward!r}: must be 'task' or 'sparse'")
-        for name in ("goal_bonus", "progress"):
-            if not np.isfinite(getattr(self, name)):
-                raise ConfigError(f"{name} {getattr(self, name)}: must be a finite number")
-
-    def total(self, task: float, reached: bool, nearer: float) -> float:
-        """Return the reward of a step that brought the robot `nearer` [m] to the goal."""
-        own = task if self.reward == "task" else float(reached)
-        return own + self.goal_bonus * reached + self.progress * nearer
 
 
 class NavigationEnv(gymnasium.Env[Any, Action]):
@@ -66,12 +33,21 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         Makes the observations.
     reward : RewardOptions
         What the reward is made of.
+    measures : callable
+        What `info` tells of a step.
     actions : int
         Length of an action, whose components lie in [-1, 1].
     render_mode : str, optional
         "rgb_array" or None.
     camera : Camera
         Draws the pictures.
+
+    Attributes
+    ----------
+    environment : PathFinding or MotorEnvironment
+        The environment below.
+    seen : mapping or None
+        Its newest observation, whatever the learner is shown of it; None before the first.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 20}  # noqa: RUF012
@@ -81,6 +57,7 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         env: PathFinding | MotorEnvironment,
         observer: Observer,
         reward: RewardOptions,
+        measures: Measures,
         actions: int,
         render_mode: str | None,
         camera: Camera,
@@ -89,14 +66,13 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
             raise ConfigError(f"render mode {render_mode!r}: must be 'rgb_array' or None")
         self.render_mode = render_mode
         self.environment = env
-        self._observer, self._reward, self._camera = observer, reward, camera
+        self._camera = camera
+        self._account = Account(self.task, env.physics, observer, reward, measures)
         self.observation_space = observer.space
         self.action_space = spaces.Box(-1.0, 1.0, (actions,), np.float32)
-        self._seen: OrderedDict[str, Any] | None = None
+        self.seen: Mapping[str, Any] | None = None
         self._over = self._closed = False
-        self._distance = 0.0
         self._steps = 0
-        self._totals: dict[str, float] = dict.fromkeys(_SUMMED, 0.0)
 
     @property
     def task(self) -> MotorTask:
@@ -133,19 +109,21 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         ------
         StartError, UnknownNameError, ConfigError
             A start that there is not, another option.
+        ClosedEnvironmentError
+            The environment has been closed.
         """
+        if self._closed:
+            raise ClosedEnvironmentError("the environment has been closed: make another one")
         super().reset(seed=seed)
         options = options or {}
         for name in options:
             if name not in _RESET_OPTIONS:
                 raise ConfigError(f"unknown reset option {name!r}; there is: start")
         step = self.environment.reset(seed, options.get("start"))
-        self._seen, self._over, self._steps = step.observation, False, 0
-        self._totals = dict.fromkeys(_SUMMED, 0.0)
-        self._distance = self.task.goal_distance(self.physics)
+        self.seen, self._over, self._steps = step.observation, False, 0
         if self.render_mode is not None:
             self._camera.begin(self.physics)
-        return self._observer(step.observation, True), self._info(step)
+        return self._account.begin(step)
 
     def step(self, action: Action) -> tuple[Any, SupportsFloat, bool, bool, dict[str, Any]]:
         """Act; return observation, reward, terminated, truncated, info.
@@ -162,44 +140,22 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         ValueError
             An action of another shape, or with numbers that are not finite.
         """
-        if self._seen is None or self._over:
+        if self.seen is None or self._over:
             raise ResetNeeded("the episode is over: call reset() before the next step()")
         action = np.asarray(action, dtype=np.float64)
         if action.shape != self.action_space.shape or not np.isfinite(action).all():
             (count,) = self.action_space.shape or (0,)
             raise ValueError(f"action {action}: must be {count} finite numbers in [-1, 1]")
-        step = self.environment.step(self._command(np.clip(action, -1.0, 1.0)))
-        self._seen, self._over = step.observation, step.last()
+        step = self.environment.step(self._command(action.clip(-1.0, 1.0)))
+        self.seen, self._over = step.observation, step.last()
         self._steps += 1
-        before, self._distance = self._distance, self.task.goal_distance(self.physics)
         if self.render_mode is not None:
             self._camera.follow(self.physics)
-        info = self._info(step)
-        terminated = step.last() and step.discount == 0.0
-        reward = self._reward.total(float(step.reward), info["is_success"], before - self._distance)
-        observed = self._observer(step.observation, False)
-        return observed, reward, terminated, step.last() and not terminated, info
+        return self._account.go_on(step)
 
     @abstractmethod
     def _command(self, action: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the action of the environment below."""
-
-    @abstractmethod
-    def _measures(self, step: dm_env.TimeStep) -> dict[str, Any]:
-        """Return what `info` tells of this step alone; at least cost, driven and duration."""
-
-    def _info(self, step: dm_env.TimeStep) -> dict[str, Any]:
-        """Return measures, costs and the truth, the same keys in every step."""
-        measures = self._measures(step)
-        for name in _SUMMED:
-            self._totals[name] += measures[name]
-        return {
-            **measures,
-            "goal_distance": self._distance,
-            "pose": np.array(self.physics.pose()),
-            "is_success": bool(self._distance <= self.task.config.goal_radius),
-            **{f"total_{name}": value for name, value in self._totals.items()},
-        }
 
     def render(self) -> npt.NDArray[np.uint8] | None:  # type: ignore[override]
         """Return a picture of the present state, (height, width, 3); None without a render mode.
@@ -212,16 +168,16 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         if self.render_mode is None:
             gymnasium.logger.warn("no render_mode was given to make(): render() draws nothing")
             return None
-        if self._seen is None:
+        if self.seen is None:
             raise ResetNeeded("there is nothing to draw before the first reset()")
-        fields = (("step", str(self._steps)), ("cost", f"{self._totals['cost']:g}"))
+        fields = (("step", str(self._steps)), ("cost", f"{self._account.totals['cost']:g}"))
         elapsed = 1.0 / self.metadata["render_fps"]
-        return self._camera.picture(self.physics, self._seen, elapsed, fields)
+        return self._camera.picture(self.physics, self.seen, elapsed, fields)
 
     def close(self) -> None:
         """Free the simulation and its OpenGL contexts; more than once does no harm."""
         if not self._closed:
-            self._closed, self._seen = True, None
+            self._closed, self.seen = True, None
             self._camera.close()
             self.environment.close()
 

@@ -1,5 +1,7 @@
 """Pictures of an environment while it runs, for ``render_mode="rgb_array"``."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from nomad_mj.envs import percept_of
@@ -59,7 +61,7 @@ class Camera:
     def picture(
         self,
         physics: NavigationPhysics,
-        observation: dict[str, FloatArray],
+        observation: Mapping[str, FloatArray],
         elapsed: float,
         fields: tuple[tuple[str, str], ...],
     ) -> Image:

@@ -5,16 +5,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
-import dm_env
 import numpy as np
 
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, load
-from nomad_mj.gym.base import NavigationEnv, RewardOptions, picture_size, refuse_observation
+from nomad_mj.gym.account import motor_measures
+from nomad_mj.gym.base import NavigationEnv, picture_size, refuse_observation
 from nomad_mj.gym.camera import Camera
 from nomad_mj.gym.everything import EverythingObserver
 from nomad_mj.gym.observations import DrivenRangesObserver, Observer
 from nomad_mj.gym.options import task_options
-from nomad_mj.scene import CONTROL_TIMESTEP
+from nomad_mj.gym.reward import RewardOptions
 from nomad_mj.types import FloatArray
 
 
@@ -74,24 +74,19 @@ class MotorEnv(NavigationEnv):
             spec = env.action_spec()
             self._low, self._high = spec.minimum, spec.maximum
             count = spec.shape[0]
-            super().__init__(env, observers[observation], options, count, render_mode, camera)
+            measures = motor_measures(env.task, env.physics)
+            super().__init__(
+                env, observers[observation], options, measures, count, render_mode, camera
+            )
         except BaseException:
             env.close()
             raise
 
     def _command(self, action: FloatArray) -> FloatArray:
         """Return the motors' commands; 0 is 0, whatever the limits."""
-        largest = np.maximum(np.abs(self._low), np.abs(self._high))
-        return np.clip(action * largest, self._low, self._high)
+        return motor_commands(action, self._low, self._high)
 
-    def _measures(self, step: dm_env.TimeStep) -> dict[str, Any]:
-        travel = self.task.travel
-        bumped = bool(np.count_nonzero(self.physics.bumpers()))
-        driven = 0.0 if step.first() else math.hypot(travel.forward, travel.sideways)
-        return {
-            "cost": float(bumped),
-            "bumper_contact": bumped,
-            "clearance": float(self.task.ranges.min()),
-            "duration": 0.0 if step.first() else CONTROL_TIMESTEP,
-            "driven": driven,
-        }
+
+def motor_commands(actions: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+    """Return the commands (..., M) of actions in [-1, 1], given the motors' limits; 0 is 0."""
+    return (actions * np.maximum(np.abs(low), np.abs(high))).clip(low, high)

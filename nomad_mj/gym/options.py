@@ -1,13 +1,13 @@
 """Options as plain data, as a JSON file or a saved environment specification has them."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import is_dataclass
 from typing import Any, TypeVar, cast, get_args, get_type_hints
 
 import cattrs
 
 from nomad_mj.envs import PathFindingConfig
-from nomad_mj.errors import ConfigError
+from nomad_mj.errors import ConfigError, NomadError
 from nomad_mj.movers import MovingGoal, MovingObstacles
 from nomad_mj.tasks import MotorConfig
 
@@ -33,11 +33,20 @@ def structure(what: str, given: _T | Mapping[str, Any], cls: type[_T]) -> _T:
         return given
     try:
         return _CONVERTER.structure(cast(Mapping[str, Any], given), cls)
-    except ConfigError:
-        raise
     except Exception as error:
+        for cause in _causes(error):
+            if isinstance(cause, NomadError):  # the class itself has refused the values
+                raise cause from None
         reason = "; ".join(cattrs.transform_error(error, path=what))
         raise ConfigError(f"{what}: is no {cls.__name__}: {' '.join(reason.split())}") from None
+
+
+def _causes(error: BaseException) -> Iterator[BaseException]:
+    """Yield an error and those that it groups."""
+    yield error
+    inner: Iterable[BaseException] = getattr(error, "exceptions", ())
+    for each in inner:
+        yield from _causes(each)
 
 
 def task_options(given: Mapping[str, Any] | None) -> dict[str, Any]:

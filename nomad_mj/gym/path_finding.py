@@ -4,16 +4,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
-import dm_env
-import numpy as np
-
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, load
-from nomad_mj.gym.base import NavigationEnv, RewardOptions, picture_size, refuse_observation
+from nomad_mj.gym.account import move_measures
+from nomad_mj.gym.base import NavigationEnv, picture_size, refuse_observation
 from nomad_mj.gym.camera import Camera
 from nomad_mj.gym.everything import EverythingObserver
 from nomad_mj.gym.observations import Observer, RangesObserver, SituationObserver
 from nomad_mj.gym.options import structure, task_options
-from nomad_mj.motion import Outcome
+from nomad_mj.gym.reward import RewardOptions
 from nomad_mj.perception import SituationSpec
 from nomad_mj.types import FloatArray
 
@@ -96,29 +94,14 @@ class PathFindingEnv(NavigationEnv):
                 "ranges": RangesObserver(env.scene),
                 "dict": EverythingObserver(env.scene, env.observation_spec()),
             }
-            super().__init__(env, observers[observation], options, 2, render_mode, camera)
+            measures = move_measures(env.motor.task)
+            super().__init__(env, observers[observation], options, measures, 2, render_mode, camera)
         except BaseException:
             env.close()
             raise
         self.observation, self.situation = observation, spec
-        self._farthest = max(ring.max_range for ring in env.scene.robot.layout.rings)
         if render_mode is not None:
             env.on_control_step = lambda _: camera.follow(env.physics)
 
     def _command(self, action: FloatArray) -> FloatArray:
         return action
-
-    def _measures(self, step: dm_env.TimeStep) -> dict[str, Any]:
-        seen = step.observation
-        outcome = Outcome(int(seen["outcome"]))
-        stopped, bumped = outcome is Outcome.VIRTUAL_COLLISION, outcome is Outcome.BUMPED
-        return {
-            "cost": float(stopped or bumped),
-            "virtual_collision": stopped,
-            "bumper_contact": bumped,
-            # Infinite after a move that has not begun.
-            "clearance": float(np.minimum(seen["clearance"], self._farthest)),
-            "duration": float(seen["duration"]),
-            "driven": float(seen["driven"]),
-            "outcome": int(outcome),
-        }

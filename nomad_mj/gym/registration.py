@@ -14,11 +14,13 @@ def register() -> None:
         gymnasium.register(
             PATH_FINDING,
             entry_point="nomad_mj.gym.path_finding:PathFindingEnv",
+            vector_entry_point="nomad_mj.gym.vector_entries:path_finding_vector_env",
             max_episode_steps=DECISIONS,
         )
     if MOTOR not in gymnasium.registry:
         gymnasium.register(
             MOTOR,
             entry_point="nomad_mj.gym.motor:MotorEnv",
+            vector_entry_point="nomad_mj.gym.vector_entries:motor_vector_env",
             max_episode_steps=CONTROL_STEPS,
         )

@@ -1,12 +1,13 @@
 """Car-like drive: it turns only while it drives, so it shuttles to and fro to face elsewhere."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from nomad_mj.motion.config import MotionConfig, Outcome
 from nomad_mj.motion.drive import Move
 from nomad_mj.motion.straight import StraightMove, ramp_speed
-from nomad_mj.types import FloatArray, MotionLimits, Travel
+from nomad_mj.types import MotionLimits, Travel
 
 _FACED = math.radians(3.0)  # good enough to drive off: the rest is steered away
 _LEG = 0.3  # [m], longest way of a shuttle
@@ -59,12 +60,11 @@ class CarDrive:
         """Way of each driven wheel [m], angle of each steered one [rad]."""
         return self.motors
 
-    def travel(self, encoders: FloatArray, heading: float) -> Travel:
+    def travel(self, encoders: Sequence[float], heading: float) -> Travel:
         """Return what the encoders say of the robot's origin, by the bicycle model."""
-        values = encoders.tolist()
         count = len(self.driven)
-        way = sum(values[:count]) / count
-        steering = sum(values[count:]) / len(self.steered)
+        way = sum(encoders[:count]) / count
+        steering = sum(encoders[count:]) / len(self.steered)
         turned = way * math.tan(steering) / self.wheelbase
         return Travel(way, self.axle * turned, heading + turned, heading + turned)
 

@@ -4,11 +4,12 @@ A new kind of drive is a class with the members of `Drive`; `robots.drives` make
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from typing import Protocol
 
 from nomad_mj.motion.config import MotionConfig, Outcome
 from nomad_mj.motion.straight import StraightMove
-from nomad_mj.types import FloatArray, MotionLimits, Travel
+from nomad_mj.types import MotionLimits, Travel
 
 
 class Move(ABC):
@@ -69,12 +70,12 @@ class Drive(Protocol):
         """Largest speeds and accelerations of the robot as a whole."""
         ...
 
-    def travel(self, encoders: FloatArray, heading: float) -> Travel:
+    def travel(self, encoders: Sequence[float], heading: float) -> Travel:
         """Return what readings of the encoders say of a control step.
 
         Parameters
         ----------
-        encoders : array (len(self.encoders),)
+        encoders : sequence of float, as many as `encoders`
             Ways since the last control step [m], angles now [rad].
         heading : float
             Of the robot at the last control step [rad].

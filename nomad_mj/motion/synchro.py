@@ -3,12 +3,13 @@
 A third motor turns the turret with the range sensors, if there is one.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from nomad_mj.motion.config import MotionConfig
 from nomad_mj.motion.drive import Move
 from nomad_mj.motion.straight import StraightMove
-from nomad_mj.types import FloatArray, MotionLimits, Travel
+from nomad_mj.types import MotionLimits, Travel
 
 _TURRET_GAIN = 4.0  # [1/s] with which the turret holds its direction
 
@@ -39,9 +40,9 @@ class SynchroDrive:
         """Way [m]; angles of the wheels and of the turret [rad]."""
         return self.motors
 
-    def travel(self, encoders: FloatArray, heading: float) -> Travel:
+    def travel(self, encoders: Sequence[float], heading: float) -> Travel:
         """Return what the encoders say: steer and turret tell directions in the world."""
-        forward, steer, *turret = encoders.tolist()
+        forward, steer, *turret = encoders
         return Travel(forward, 0.0, steer, turret[0] if turret else 0.0)
 
     def move(

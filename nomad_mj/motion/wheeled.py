@@ -6,6 +6,7 @@ can go sideways (K. M. Lynch and F. C. Park, "Modern Robotics", 2017, section 13
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,7 +15,7 @@ import numpy as np
 from nomad_mj.motion.config import MotionConfig
 from nomad_mj.motion.drive import Move
 from nomad_mj.motion.straight import StraightMove
-from nomad_mj.types import FloatArray, MotionLimits, Travel
+from nomad_mj.types import MotionLimits, Travel
 
 _HOLD_GAIN = 4.0  # [1/s] with which an omnidirectional robot holds its heading
 
@@ -69,11 +70,11 @@ class WheeledDrive:
         """Ways of the robot per way of each wheel, (3, wheels)."""
         return np.linalg.pinv(np.array(self.rows)).tolist()
 
-    def travel(self, encoders: FloatArray, heading: float) -> Travel:
+    def travel(self, encoders: Sequence[float], heading: float) -> Travel:
         """Return what the wheels' ways say; the sensors turn with the robot."""
-        ways = encoders.tolist()
         forward, sideways, turned = (
-            sum(share * way for share, way in zip(row, ways, strict=True)) for row in self._inverse
+            sum(share * way for share, way in zip(row, encoders, strict=True))
+            for row in self._inverse
         )
         if self.axle:  # which goes straight ahead, so the origin swings about it
             sideways += self.axle * turned

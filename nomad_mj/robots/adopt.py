@@ -100,7 +100,7 @@ def _rename_motors(spec: mujoco.MjSpec, sheet: Sheet, robot: str) -> list[str]:
             else:
                 wheels.append(name)
     if wheels:
-        spec.add_text(name="motors", data=" ".join(wheels))
+        spec.add_text(name="motors", data="\n".join(wheels))  # a name may hold spaces
     return [a.name for a in spec.actuators if a.name]
 
 

@@ -120,7 +120,7 @@ def find_wheels(named: NamedModel, actuators: dict[str, int]) -> list[str]:
         There are fewer than two, or one of those named is no velocity servo.
     """
     model = named.model
-    given = named.text("motors").split()
+    given = named.text("motors").splitlines()
     for name in given:
         named.require("actuator", name, actuators)
         if not is_velocity_servo(model, actuators[name]):

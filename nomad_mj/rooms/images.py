@@ -1,10 +1,11 @@
 """Images of maps as numbers: PGM, PNG and BMP."""
 
+import os
 import warnings
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
+from PIL import Image, UnidentifiedImageError
 
 from nomad_mj.errors import ModelError
 from nomad_mj.rooms.rectangles import Mask
@@ -34,8 +35,9 @@ def read_image(path: Path) -> tuple[FloatArray, Mask]:
     ModelError
         No such file, no image, or one that is too large.
     """
-    what = f"map image {str(path)!r}"
-    if not path.is_file():
+    name = str(path) if len(str(path)) <= 200 else f"{str(path)[:197]}..."
+    what = f"map image {name!r}"
+    if not os.path.isfile(path):  # noqa: PTH113 - unlike Path.is_file no error for long names
         raise ModelError(f"{what} does not exist; a map's YAML file names it relative to itself")
     try:
         with warnings.catch_warnings(), path.open("rb") as file:
@@ -47,6 +49,8 @@ def read_image(path: Path) -> tuple[FloatArray, Mask]:
                     f"{MOST_PIXELS // 2**20} million: cut it or make it coarser"
                 )
             return _brightness(image)
+    except UnidentifiedImageError:
+        raise ModelError(f"{what} is no PGM, PNG or BMP image") from None
     except (OSError, ValueError, SyntaxError, EOFError, Image.DecompressionBombError) as error:
         reason = " ".join(str(error).split())[:200]
         raise ModelError(f"{what} is no PGM, PNG or BMP image: {reason}") from None

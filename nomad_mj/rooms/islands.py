@@ -7,8 +7,9 @@ import shapely
 from scipy import ndimage
 from shapely.geometry.base import BaseGeometry
 
+from nomad_mj.errors import ModelError
 from nomad_mj.rooms.rectangles import Mask
-from nomad_mj.rooms.room import Box, Cylinder, Polygon, Shape
+from nomad_mj.rooms.room import MOST_SHAPES, Box, Cylinder, Polygon, Shape
 from nomad_mj.types import FloatArray
 
 MOST_CORNERS = 16
@@ -29,9 +30,16 @@ def fit_islands(inside: Mask) -> tuple[list[Shape], Mask]:
         In cells: x counts columns, y rows.
     shown : ndarray of bool, shape (R, C)
         The cells that these stand for.
+
+    Raises
+    ------
+    ModelError
+        There are too many things.
     """
     labels = np.empty(inside.shape, dtype=np.int32)
-    ndimage.label(~inside, np.ones((3, 3)), output=labels)
+    count = int(ndimage.label(~inside, np.ones((3, 3)), output=labels)) - 1
+    if count > MOST_SHAPES:
+        raise too_many(count)
     shapes: list[Shape] = []
     found = [int(labels[0, 0])]
     for index, where in enumerate(ndimage.find_objects(labels), 1):
@@ -42,6 +50,14 @@ def fit_islands(inside: Mask) -> tuple[list[Shape], Mask]:
             shapes.append(shape)
             found.append(index)
     return shapes, np.isin(labels, found[1:])
+
+
+def too_many(count: int) -> ModelError:
+    """Return the error that tells of a map that is mostly noise."""
+    return ModelError(
+        f"shows {count} separate walls and things; at most {MOST_SHAPES}: clean it, make it "
+        "coarser, or take a part of it by 'within' (--within METRES)"
+    )
 
 
 def _fit(part: Mask, corner: tuple[int, int]) -> Shape | None:

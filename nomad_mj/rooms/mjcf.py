@@ -8,6 +8,7 @@ from nomad_mj.rooms.cameras import room_cameras
 from nomad_mj.rooms.room import Cylinder, Polygon, Room, Shape
 
 _COLOURS = ("0.80 0.52 0.42 1", "0.56 0.66 0.54 1", "0.86 0.73 0.50 1", "0.47 0.57 0.67 1")
+_WIDEST_VIEW = 180.0  # [m] the engine takes no orthographic camera that sees as much
 _HEAD = """\
   <default>
     <default class="wall">
@@ -94,6 +95,7 @@ def _sites(room: Room) -> Iterator[str]:
 def _cameras(room: Room) -> Iterator[str]:
     (top, side), (overview, angle) = room_cameras(room)
     pose = f'pos="{_text(*top)}" projection="orthographic"'
-    yield f'    <camera name="top" {pose} fovy="{_text(side)}"/>'
+    if side < _WIDEST_VIEW:  # videos look at larger rooms with a camera of their own
+        yield f'    <camera name="top" {pose} fovy="{_text(side)}"/>'
     pose = f'pos="{_text(*overview)}" xyaxes="1 0 0 0 0.775 0.632"'
     yield f'    <camera name="overview" {pose} fovy="{_text(angle)}"/>'

@@ -9,9 +9,9 @@ from scipy import ndimage
 
 from nomad_mj.errors import ModelError
 from nomad_mj.geometry import rotate
-from nomad_mj.rooms.islands import fit_islands
+from nomad_mj.rooms.islands import fit_islands, too_many
 from nomad_mj.rooms.rectangles import Mask, merge_cells
-from nomad_mj.rooms.room import LONGEST_SIDE, Box, Cylinder, Polygon, Room, Shape
+from nomad_mj.rooms.room import LONGEST_SIDE, MOST_SHAPES, Box, Cylinder, Polygon, Room, Shape
 from nomad_mj.rooms.smooth import straighten, without_specks
 from nomad_mj.types import FloatArray
 
@@ -92,7 +92,7 @@ def room_of_map(
     Raises
     ------
     ModelError
-        No free space, or none at the goal.
+        No free space, none at the goal, or too many walls and things.
     """
     free = _free(grid)
     inside = _region(grid, free, goal)
@@ -105,6 +105,8 @@ def room_of_map(
         near = _near(grid, inside.shape, goal, within)
         inside = _region(grid, np.logical_and(inside, near), goal)
     walls, things = _shapes(grid, inside)
+    if len(walls) + len(things) > MOST_SHAPES:
+        raise too_many(len(walls) + len(things))
     rows, columns = np.nonzero(inside)
     low, high = (columns.min() - 1, rows.min() - 1), (columns.max(), rows.max())
     outline = grid.to_world([low, (high[0], low[1]), high, (low[0], high[1])])

@@ -11,7 +11,7 @@ from nomad_mj.arenas import Arena, FloorPlan, check_arena
 from nomad_mj.arenas.halton import RADIUS, ROBOT_HEIGHT, halton_starts
 from nomad_mj.errors import ConfigError, ModelError, StartError
 from nomad_mj.rooms.mjcf import to_mjcf
-from nomad_mj.rooms.room import Room
+from nomad_mj.rooms.room import MOST_STARTS, Room
 
 DEFAULT_STARTS = 20
 _PRECISION = 0.05  # [m], of the most open place
@@ -53,12 +53,18 @@ def furnish(
         The robot does not fit at a place, cannot go from there to the goal, or there are not so
         many starts.
     """
-    if starts is not None and not 1 <= starts <= 1000:
-        raise ConfigError(f"starts {starts}: must be 1 to 1000")
+    if starts is not None and not 1 <= starts <= MOST_STARTS:
+        raise ConfigError(f"starts {starts}: must be 1 to {MOST_STARTS}")
     if goal is not None and not np.isfinite(goal).all():
         raise ConfigError(f"goal {goal}: must be x, y in metres")
     plan = floor_plan(room)
     target = goal or room.goal or _most_open(room, plan, radius)
+    x0, y0, x1, y1 = room.bounds
+    if not (x0 <= target[0] <= x1 and y0 <= target[1] <= y1):
+        raise StartError(
+            f"room {room.name!r}: goal ({target[0]:g}, {target[1]:g}) is outside; the room reaches "
+            f"from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
+        )
     chosen = room.starts
     if starts is not None or not chosen:
         count, fewest = (DEFAULT_STARTS, 1) if starts is None else (starts, starts)

@@ -8,7 +8,17 @@ import numpy as np
 import shapely
 
 from nomad_mj.errors import ModelError
-from nomad_mj.rooms.room import HEIGHT, LONGEST_SIDE, Box, Cylinder, Polygon, Room, Shape
+from nomad_mj.rooms.room import (
+    HEIGHT,
+    LONGEST_SIDE,
+    MOST_SHAPES,
+    MOST_STARTS,
+    Box,
+    Cylinder,
+    Polygon,
+    Room,
+    Shape,
+)
 from nomad_mj.values import number, numbers, read_yaml, refuse_others
 
 WALL = 0.15
@@ -47,10 +57,12 @@ def read_plan(path: Path) -> Room:
     x0, y0, x1, y1 = shapely.Polygon(outline).bounds
     if max(x1 - x0, y1 - y0) > LONGEST_SIDE:
         raise ModelError(f"{what}: larger than {LONGEST_SIDE:g} m; lengths are metres")
-    obstacles = _list(held, "obstacles", what)
+    obstacles = _list(held, "obstacles", what, MOST_SHAPES)
     shapes = tuple(_shape(each, f"{what}: obstacle {i}") for i, each in enumerate(obstacles, 1))
     goal = numbers(held["goal"], f"{what}: goal", 2) if "goal" in held else None
-    starts = [numbers(each, f"{what}: start", 2, 3) for each in _list(held, "starts", what)]
+    starts = [
+        numbers(each, f"{what}: start", 2, 3) for each in _list(held, "starts", what, MOST_STARTS)
+    ]
     return Room(
         path.stem,
         walls_along(outline),
@@ -87,10 +99,12 @@ def _left(a: Any, b: Any) -> bool:
     return bool(a[0] * b[1] - a[1] * b[0] > 0)
 
 
-def _list(held: dict[Any, Any], key: str, what: str) -> list[Any]:
+def _list(held: dict[Any, Any], key: str, what: str, most: int) -> list[Any]:
     value = held.get(key, [])
     if not isinstance(value, list):
         raise ModelError(f"{what}: {key} must be a list, one a line after '-'")
+    if len(value) > most:
+        raise ModelError(f"{what}: {len(value)} {key}; at most {most}")
     return value
 
 

@@ -9,6 +9,10 @@ HEIGHT = 0.9
 LONGEST_SIDE = 1000.0
 """A room that is larger [m] is taken for a mistake in its unit."""
 
+MOST_STARTS = 1000
+MOST_SHAPES = 2000
+"""More walls and obstacles are taken for noise: each ray would have to look at all of them."""
+
 
 @dataclass(frozen=True)
 class Box:

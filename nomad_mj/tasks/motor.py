@@ -11,14 +11,12 @@ from dm_env import specs
 from nomad_mj.errors import ConfigError
 from nomad_mj.movers import Movers
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
-from nomad_mj.tasks.bumpers import StickyBumpers
 from nomad_mj.tasks.config import MotorConfig
-from nomad_mj.tasks.gyroscope import GyroscopeStream
-from nomad_mj.tasks.odometry import Odometry
-from nomad_mj.tasks.physics import NavigationPhysics
+from nomad_mj.tasks.physics import NavigationPhysics, Placeable, Posed
 from nomad_mj.tasks.ranging import Ranging
+from nomad_mj.tasks.self_sensing import SelfSensing
 from nomad_mj.tasks.starts import Start, resolve_start
-from nomad_mj.types import FloatArray, Pose, Travel
+from nomad_mj.types import FloatArray, Travel
 
 REWARD_MARGIN = 5.0  # [m] from the goal at which the reward has fallen to 0.1
 
@@ -48,8 +46,12 @@ class MotorTask(control.Task):
         Where the present episode started.
     ranges : array (layout.count,)
         The range readings of this control step, all rings concatenated [m].
-    travel : Travel
-        What the encoders tell of this control step, without drift.
+    goal_xy : (float, float)
+        Where the goal is now [m].
+    ranging : Ranging
+        Its range sensors.
+    own : SelfSensing
+        What it senses of itself.
     movers : Movers or None
         Where the goal and the obstacles that move are now; None if nothing moves.
     random : numpy.random.Generator
@@ -68,17 +70,17 @@ class MotorTask(control.Task):
             raise ConfigError(
                 "range noise grazing: needs a scene that was built with its specular_rings"
             )
-        self._ranging = Ranging(self.config.range_noise, self.config.sonar, scene.robot)
+        self.ranging = Ranging(self.config.range_noise, self.config.sonar, scene.robot)
         self._start: Start = None
         self.seed(random)
-        self._slices: list[tuple[str, int, int]] = []
+        self.slices: list[tuple[str, int, int]] = []
         first = 0
         for ring in scene.robot.layout.rings:
-            self._slices.append((ring.name, first, first + len(ring.bearings)))
+            self.slices.append((ring.name, first, first + len(ring.bearings)))
             first += len(ring.bearings)
         self._limits: FloatArray = scene.model.actuator_ctrlrange[scene.robot.controls]
         self._goal: FloatArray = scene.arena.goal
-        self._goal_xy: tuple[float, float] = tuple(self._goal.tolist())
+        self.goal_xy: tuple[float, float] = tuple(self._goal.tolist())
         radius = scene.robot.layout.radius
         moving = scene.moving
         self.movers = Movers(moving, scene.plan, self._goal, radius) if moving else None
@@ -113,31 +115,12 @@ class MotorTask(control.Task):
             physics.place(start)
             self._episode += 1
             self._start = None
-        self._ranging.start(ranges, *streams[6:8])
-        self._err(start, odometry, *streams[8:])
+        self.ranging.start(ranges, *streams[6:8])
+        robot = self.scene.robot
+        self.own = SelfSensing(robot, self.config, start, odometry, *streams[8:])
         self._observation: OrderedDict[str, FloatArray] | None = None
-        self.ranges: FloatArray = np.zeros(self.scene.robot.layout.count)
-        self.travel = Travel(0.0, 0.0, start.heading, start.heading)
+        self.ranges: FloatArray = np.zeros(robot.layout.count)
         self.start_pose = start
-
-    def _err(
-        self,
-        start: Pose,
-        odometry: np.random.Generator,
-        bumpers: np.random.SeedSequence,
-        gyroscope: np.random.SeedSequence,
-    ) -> None:
-        """Set up what errs beside the range sensors, for an episode that starts there."""
-        config = self.config
-        self._bumpers = self._gyroscope = None
-        weight = 0.0
-        if config.bumper_noise.active:
-            rng = np.random.default_rng(bumpers)
-            self._bumpers = StickyBumpers(config.bumper_noise, len(self.scene.robot.bumpers), rng)
-        if config.gyroscope is not None:
-            rng, weight = np.random.default_rng(gyroscope), config.gyroscope.weight
-            self._gyroscope = GyroscopeStream(config.gyroscope, start.heading, rng)
-        self._odometry = Odometry(start, config.odometry_noise, odometry, weight)
 
     def initialize_episode(self, physics: NavigationPhysics) -> None:
         """Place the robot and reseed the sensors."""
@@ -147,24 +130,36 @@ class MotorTask(control.Task):
         """Command the motors in the order of the drive's: see `Drive.motors`."""
         physics.command(action)
         self._observation = None
+        self.move_movers(physics)
+
+    def move_movers(self, physics: Placeable) -> None:
+        """Let what moves beside the robot go on for a control step."""
         if self.movers is not None:
             self.movers.advance(CONTROL_TIMESTEP, physics.pose()[:2])
             self._show(self.movers, physics)
 
-    def _show(self, movers: Movers, physics: NavigationPhysics | None) -> None:
+    def _show(self, movers: Movers, physics: Placeable | None) -> None:
         """Let the goal be where it has moved, and the bodies of all that moves."""
         self._goal = movers.goal
-        self._goal_xy = tuple(self._goal.tolist())
+        self.goal_xy = tuple(self._goal.tolist())
         if physics is not None:
             physics.move_bodies(movers.rows, movers.body_places())
 
     def action_spec(self, physics: NavigationPhysics) -> specs.BoundedArray:
         """Return the motors' limits, (M,)."""
+        return self.motor_spec()
+
+    def observation_spec(self, physics: NavigationPhysics) -> "OrderedDict[str, specs.Array]":
+        """Return the shapes and limits of the observations."""
+        return self.sensor_spec()
+
+    def motor_spec(self) -> specs.BoundedArray:
+        """Return the motors' limits, (M,)."""
         low, high = self._limits.T
         motors = self.scene.robot.drive.motors
         return specs.BoundedArray((len(motors),), np.float64, low, high, name="\t".join(motors))
 
-    def observation_spec(self, physics: NavigationPhysics) -> "OrderedDict[str, specs.Array]":
+    def sensor_spec(self) -> "OrderedDict[str, specs.Array]":
         """Return the shapes and limits of the observations."""
         robot = self.scene.robot
         result: OrderedDict[str, specs.Array] = OrderedDict()
@@ -187,43 +182,51 @@ class MotorTask(control.Task):
         return self._observation.copy()
 
     def _sense(self, physics: NavigationPhysics) -> "OrderedDict[str, FloatArray]":
-        self.ranges = ranges = self._ranging.read(physics)
+        self.ranges = ranges = self.ranging.read(physics.cone_ranges())
         encoders = physics.encoders()
-        travel = self.scene.robot.drive.travel(encoders, self.travel.heading)
-        turned = None
-        if self._gyroscope is not None:
-            turned = self._gyroscope.turned(physics.pose().heading)
-        self._odometry.update(travel, turned)
-        self.travel = travel
-        odometry = self._odometry.reading()
+        odometry = np.array(self.own.reckon(encoders.tolist(), physics.pose))
         result: OrderedDict[str, FloatArray] = OrderedDict()
-        for name, first, last in self._slices:
+        for name, first, last in self.slices:
             result[name] = ranges[first:last]
-        bumpers = physics.bumpers()
-        result["bumpers"] = bumpers if self._bumpers is None else self._bumpers.tell(bumpers)
+        result["bumpers"] = self.own.tell_bumpers(physics.bumpers())
         result["encoders"] = encoders
         result["odometry"] = odometry
         result["goal"] = self._goal - odometry[:2]
         return result
 
     @property
+    def travel(self) -> Travel:
+        """What the encoders tell of this control step, without drift."""
+        return self.own.travel
+
+    @property
     def goal(self) -> FloatArray:
         """Where the goal is now, (2,) [m]: the one that is told, ends the episode and is drawn."""
         return self._goal.copy()
 
-    def goal_distance(self, physics: NavigationPhysics) -> float:
+    def goal_distance(self, physics: Posed) -> float:
         """Return the true distance from the robot's centre to the goal [m]."""
-        pose, goal = physics.pose(), self._goal_xy
+        pose, goal = physics.pose(), self.goal_xy
         return math.hypot(goal[0] - pose.x, goal[1] - pose.y)
 
-    def get_reward(self, physics: NavigationPhysics) -> float:
-        """Return 1 at the goal, less the farther away, in [0, 1]."""
-        beyond = max(self.goal_distance(physics) - self.config.goal_radius, 0.0)
+    def reward_at(self, distance: float) -> float:
+        """Return the reward at a true distance from the goal [m], in [0, 1]."""
+        beyond = max(distance - self.config.goal_radius, 0.0)
         # dm_control's tolerance() with its defaults, which takes a tenth of the control step.
         return 0.1 ** (beyond / REWARD_MARGIN) ** 2
 
+    def ends_at(self, distance: float) -> bool:
+        """Return whether the episode ends at a true distance from the goal [m]."""
+        return self.config.ends_at_goal and self.reaches_goal(distance)
+
+    def reaches_goal(self, distance: float) -> bool:
+        """Return whether a true distance from the goal [m] is near enough."""
+        return distance <= self.config.goal_radius
+
+    def get_reward(self, physics: NavigationPhysics) -> float:
+        """Return 1 at the goal, less the farther away, in [0, 1]."""
+        return self.reward_at(self.goal_distance(physics))
+
     def get_termination(self, physics: NavigationPhysics) -> float | None:
         """Return discount 0 at the goal, else None: the episode goes on."""
-        if self.config.ends_at_goal and self.goal_distance(physics) <= self.config.goal_radius:
-            return 0.0
-        return None
+        return 0.0 if self.ends_at(self.goal_distance(physics)) else None

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from nomad_mj.errors import ConfigError
-from nomad_mj.types import FloatArray
+from nomad_mj.types import FloatArray, IntArray
 
 RangeNoiseKind = Literal["uniform", "gaussian", "none"]
 _BLOCK = 64  # control steps whose noise is drawn at once
@@ -94,26 +94,76 @@ class OdometryNoise:
 
 
 class RangeNoiseStream:
-    """Draws the factors (1 + e) for a round of readings at a time."""
+    """Draws the factors (1 + e) for a round of readings at a time.
+
+    Attributes
+    ----------
+    block : array (64, sensors)
+        Factors of so many control steps.
+    next : int
+        Which of them is next; -1 if all are 1 for ever.
+    """
 
     def __init__(self, noise: RangeNoise, sensors: int, rng: np.random.Generator) -> None:
         self._noise = noise
         self._shape = (_BLOCK, sensors)
         self._rng = rng
-        self._block: FloatArray = np.ones((1, sensors))
-        self._next = _BLOCK if noise.kind != "none" and noise.level > 0 else -1
+        self.block: FloatArray = np.ones((1, sensors))
+        self.next = _BLOCK if noise.kind != "none" and noise.level > 0 else -1
 
     def factors(self) -> FloatArray:
         """Return the next factors, one a sensor, never negative."""
-        if self._next < 0:
-            return self._block[0]
-        if self._next == _BLOCK:  # one call of the generator serves many control steps
-            level = self._noise.level
-            if self._noise.kind == "uniform":
-                self._block = self._rng.uniform(1 - level, 1 + level, self._shape)
-            else:
-                self._block = np.maximum(self._rng.normal(1.0, level, self._shape), 0.0)
-            self._next = 0
-        row = self._block[self._next]
-        self._next += 1
+        if self.next < 0:
+            return self.block[0]
+        if self.next == _BLOCK:  # one call of the generator serves many control steps
+            self.draw()
+        row = self.block[self.next]
+        self.next += 1
         return row
+
+    def draw(self) -> None:
+        """Draw the factors of the control steps to come."""
+        level = self._noise.level
+        if self._noise.kind == "uniform":
+            self.block = self._rng.uniform(1 - level, 1 + level, self._shape)
+        else:
+            self.block = np.maximum(self._rng.normal(1.0, level, self._shape), 0.0)
+        self.next = 0
+
+
+class RangeNoiseStreams:
+    """The streams of N robots under the same noise, asked all at once.
+
+    Parameters
+    ----------
+    streams : int
+        How many.
+    sensors : int
+        Of each robot.
+    """
+
+    def __init__(self, streams: int, sensors: int) -> None:
+        self._streams: list[RangeNoiseStream | None] = [None] * streams
+        self._blocks: FloatArray = np.ones((streams, _BLOCK, sensors))
+        self._next = np.full(streams, -1, dtype=np.intp)
+
+    def go_on(self, number: int, stream: RangeNoiseStream) -> None:
+        """Let a robot's factors go on from where a stream is; it is not to be asked any more."""
+        self._streams[number] = stream
+        self._next[number] = stream.next
+        if stream.next >= 0:
+            self._blocks[number] = stream.block
+
+    def factors(self, numbers: IntArray) -> FloatArray:
+        """Return the next factors of robots (n,), (n, sensors)."""
+        rows = self._next[numbers]
+        if len(rows) and rows[0] < 0:
+            return self._blocks[numbers, 0]
+        for number in numbers[rows == _BLOCK].tolist():
+            stream = self._streams[number]
+            assert stream is not None
+            stream.draw()
+            self.go_on(number, stream)
+        rows = self._next[numbers]
+        self._next[numbers] = rows + 1
+        return self._blocks[numbers, rows]

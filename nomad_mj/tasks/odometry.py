@@ -76,7 +76,12 @@ class Odometry:
 
     def reading(self) -> FloatArray:
         """Return x, y [m], heading of the robot and of its range sensors [rad], (4,)."""
-        reading = np.array([self.x, self.y, self.heading, self.sensors])
+        return np.array(self.told())
+
+    def told(self) -> tuple[float, float, float, float]:
+        """Return the same as plain numbers."""
+        x, y = self.x, self.y
         if self._noise.position > 0:
-            reading[:2] += self._rng.uniform(-self._noise.position, self._noise.position, 2)
-        return reading
+            wrong = self._rng.uniform(-self._noise.position, self._noise.position, 2).tolist()
+            x, y = x + wrong[0], y + wrong[1]
+        return x, y, self.heading, self.sensors

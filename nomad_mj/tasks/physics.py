@@ -1,8 +1,7 @@
 """The simulated robot, asked in its own terms: readings, encoders, pose."""
 
 import copy
-import math
-from typing import Any
+from typing import Any, Protocol
 
 import mujoco
 import numpy as np
@@ -11,12 +10,27 @@ from dm_control.rl.control import PhysicsError
 
 from nomad_mj.arenas import Nearby
 from nomad_mj.motion import SynchroDrive
-from nomad_mj.robots import PREFIX, RobotDescription
+from nomad_mj.robots import RobotDescription
 from nomad_mj.scene import Scene
 from nomad_mj.tasks.infrared import Infrared, InfraredEffects
+from nomad_mj.tasks.readout import Readout
 from nomad_mj.types import FloatArray, IntArray, Pose
 
-_MISS = 1e6  # [m]; the engine reads -1 where a ray hits nothing
+
+class Posed(Protocol):
+    """A simulation that tells where its robot is."""
+
+    def pose(self) -> Pose:
+        """Return the true pose of the robot."""
+        ...
+
+
+class Placeable(Posed, Protocol):
+    """What a task asks of a simulation beside its sensors."""
+
+    def move_bodies(self, rows: IntArray, places: FloatArray) -> None:
+        """Put mocap bodies, given their rows (n,), at places (n, 2) [m]; the next step sees it."""
+        ...
 
 
 class NavigationPhysics(Physics):
@@ -91,19 +105,10 @@ class NavigationPhysics(Physics):
         self._sensordata: FloatArray = data.sensordata
         self._history: FloatArray = data.history
         self._mocap_pos: FloatArray = data.mocap_pos
-        rays = self.robot.rays
-        self._ray_buffer = np.empty(len(rays.address))
-        # Behind the distance: direction of the ray (3), normal of the surface (3).
-        self._surfaces = rays.address[rays.specular, None] + np.arange(1, 7)
         self._qpos: FloatArray = data.qpos
         self._ctrl: FloatArray = data.ctrl
         self._controls = self.robot.controls
-        touch = [model.sensor(PREFIX + name) for name in self.robot.bumpers]
-        self._touch = _samples(model, [int(s.id) for s in touch])
-        encoders = self.robot.encoders
-        self._speed_now: IntArray = model.sensor_adr[encoders.speeds]
-        self._speeds = _samples(model, encoders.speeds.tolist()).T
-        self._scales: list[float] = (encoders.scales * float(model.opt.timestep)).tolist()
+        self._readout = Readout.of(model, self.robot)
         self._bind_steering()
         mujoco.mj_step1(model, data)  # dm_control has just computed a copy with its motors off
 
@@ -164,54 +169,24 @@ class NavigationPhysics(Physics):
         self._mocap_pos[rows, :2] = places
 
     def cone_ranges(self) -> FloatArray:
-        """Return each cone's shortest ray, (C,) [m] from the perimeter; `_MISS` and over: none.
+        """Return each cone's shortest ray, (C,) [m] from the perimeter; far beyond it: none.
 
         Rays of specular rings whose echo is lost count as a miss, see `RangeNoise.grazing`; those
         of infrared rings are as long as the light makes them seem, see `InfraredEffects`.
         """
-        rays = self.robot.rays
-        # mode="clip": without a check of the indices, which would go through another buffer.
-        values = self._sensordata.take(rays.address, out=self._ray_buffer, mode="clip")
-        np.copyto(values, _MISS, where=values < 0)
-        if self.grazing is not None:
-            surfaces = self._sensordata.take(self._surfaces).reshape(-1, 2, 3)
-            incidence = np.abs(np.multiply.reduce(surfaces, axis=1).sum(axis=1))
-            values[rays.specular[incidence < math.cos(self.grazing)]] = _MISS
+        distances = self._readout.distances(self._sensordata, self.grazing)
         if self.infrared is not None:
-            self.infrared.judge(values, *self._raw)
-        cones = np.minimum.reduceat(values, rays.first)
-        # The engine cuts what lies farther off to the maximum.
-        np.copyto(cones, _MISS, where=cones >= rays.maximum)
-        return cones - rays.offset
+            self.infrared.judge(distances, *self._raw)
+        return self._readout.cones(distances)
 
     def bumpers(self) -> FloatArray:
         """Return 1 for each bumper touched since the last control step, else 0, (B,)."""
-        forces = self._history.take(self._touch)
-        if not np.count_nonzero(forces):
-            return np.zeros(forces.shape[1])
-        return np.logical_or.reduce(forces, axis=0).astype(np.float64)
+        return self._readout.bumpers(self._history)
 
     def encoders(self) -> FloatArray:
         """Return what the encoders read: ways since the last control step [m], angles [rad]."""
-        now = self._sensordata.take(self._speed_now).tolist()
-        before = self._history.take(self._speeds).tolist()
-        ways = [
-            (sum(past) + last) * scale
-            for past, last, scale in zip(before, now, self._scales, strict=True)
-        ]
-        return np.array(ways + self._qpos.take(self.robot.encoders.angles).tolist())
+        return self._readout.encoders(self._sensordata, self._history, self._qpos)
 
     def pose(self) -> Pose:
         """Return the true pose: where the base is and where it, or its wheels, point."""
         return self.robot.footing.pose(self._qpos)
-
-
-def _samples(model: mujoco.MjModel, sensors: list[int]) -> IntArray:
-    """Return where in ``data.history`` the last samples of scalar sensors are, (samples, sensors).
-
-    A scalar sensor's buffer holds two numbers of state, the samples' times, then their values.
-    """
-    count = int(model.sensor_history[sensors[0], 0]) if sensors else 0
-    values = np.arange(2 + count, 2 + 2 * count, dtype=np.intp)
-    first = np.array([int(model.sensor_historyadr[s]) for s in sensors], dtype=np.intp)
-    return values[:, None] + first

@@ -16,7 +16,7 @@ from nomad_agents.deep.training import DeepTraining, train_deep
 from nomad_agents.episode import run_episode
 
 import nomad_mj
-from nomad_mj.errors import ConfigError
+from nomad_mj.errors import ConfigError, OutputError
 
 torch = pytest.importorskip("torch")
 pytest.importorskip("stable_baselines3")
@@ -101,7 +101,11 @@ def test_curves_for_tensorboard(small_room: Path, tmp_path: Path) -> None:
     pytest.importorskip("tensorboard")
     settings = replace(small("ppo"), rollout=10, batch_size=5, episode_decisions=5)
     with closing(make_env(settings, "ranges", small_room, ROBOT)) as learning:
-        train_deep(settings, learning, 3, 21, log_folder=tmp_path / "curves")
+        for seed in (2, 3):  # the curves of the first training give way to those of the second
+            train_deep(settings, learning, seed, 21, log_folder=tmp_path / "curves")
+        (tmp_path / "file").touch()
+        with pytest.raises(OutputError, match=r"cannot write curves to .*file/x': Not a dir"):
+            train_deep(settings, learning, 3, 21, log_folder=tmp_path / "file" / "x")
     (curves,) = (tmp_path / "curves").iterdir()
     assert curves.name.startswith("events.out.tfevents")
     assert b"rollout/ep_rew_mean" in curves.read_bytes()

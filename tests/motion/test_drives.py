@@ -64,7 +64,7 @@ class Ideal:
 
     def step(self, command: tuple[float, ...]) -> None:
         before = self.travel.heading
-        self.travel = self.drive.travel(np.array(self.encoders(command)), before)
+        self.travel = self.drive.travel(self.encoders(command), before)
         middle = (before + self.travel.heading) / 2
         forward, sideways = self.travel[:2]
         self.x += forward * math.cos(middle) - sideways * math.sin(middle)
@@ -162,7 +162,7 @@ def test_a_robot_on_two_wheels_turns_about_their_axle(turn: float) -> None:
 
 @given(way=st.floats(0.001, 0.05), steering=st.floats(-0.45, 0.45))
 def test_a_car_turns_about_the_axle_that_is_not_steered(way: float, steering: float) -> None:
-    travel = CAR.travel(np.array([way, steering]), 0.0)
+    travel = CAR.travel([way, steering], 0.0)
     assert travel.heading == pytest.approx(way * math.tan(steering) / CAR.wheelbase)
     # The middle of the driven axle, behind the origin, goes straight ahead.
     assert travel.sideways - CAR.axle * travel.heading == pytest.approx(0, abs=1e-15)

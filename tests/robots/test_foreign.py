@@ -103,6 +103,16 @@ def test_torque_motors_become_servos(cart: Cart) -> None:
     assert straight.finished and straight.off_target < 0.04
 
 
+def test_names_of_motors_may_hold_spaces(cart: Cart) -> None:
+    sheet = "motors: [motor l, motor r]\n" + LIDAR
+    servos = "".join(
+        f'<velocity name="motor {side}" joint="wheel_{side}" kv="1" ctrlrange="-15 15"/>'
+        for side in "lr"
+    )
+    robot = build_scene("empty_room", cart(sheet=sheet, actuators=servos)).robot
+    assert robot.drive.motors == ("motor l", "motor r")
+
+
 def test_numbers_of_the_data_sheet_go_before_those_of_the_file(cart: Cart) -> None:
     numbers = "numbers: {radius: 0.21, wheel_radius: 0.06, track: 0.3, turn_max_speed: 1}\n"
     file = ("<actuator>", '<custom><numeric name="radius" data="0.5"/></custom><actuator>')

@@ -53,3 +53,12 @@ def test_walls_thicker_than_the_floor_is_wide_are_seen() -> None:
     for camera in ("top", "overview"):
         (left,) = project(model, camera, np.array([[-5.5, 1.0, 0.0]]))
         assert -4 / 3 < left[0] < -0.85
+
+
+def test_a_room_too_large_for_an_orthographic_camera_has_the_other_one() -> None:
+    outline = ((0.0, 0.0), (1000.0, 0.0), (1000.0, 900.0), (0.0, 900.0))
+    room = Room("r", walls_along(outline), (), (0.0, 0.0, 1000.0, 900.0))
+    model = mujoco.MjModel.from_xml_string(to_mjcf(room))
+    assert model.ncam == 1
+    corners = np.array([[x, y, 0.0] for x in (0, 1000) for y in (0, 900)])
+    assert np.abs(project(model, "overview", corners)).max() <= 4 / 3

@@ -184,7 +184,7 @@ class DeepLearner(Learner):
 
     def require(self) -> None:
         """Ask for PyTorch and Stable-Baselines3."""
-        require_extra()
+        require_extra(curves=False)
 
     def learn(self, lesson: Lesson) -> tuple[Agent, Row]:
         """Train until the budget is spent."""

@@ -11,11 +11,13 @@ from nomad_agents.cli.check import Check
 from nomad_agents.cli.common import fail
 from nomad_agents.cli.demo import Demo
 from nomad_agents.cli.evaluate import Evaluate
+from nomad_agents.cli.export import Export
 from nomad_agents.cli.listing import List
 from nomad_agents.cli.parsing import parse
 from nomad_agents.cli.record import Record
 from nomad_agents.cli.reproduce import Reproduce
 from nomad_agents.cli.room import MakeRoom
+from nomad_agents.cli.sweep import Sweep
 from nomad_agents.cli.train import Train
 from nomad_agents.cli.view import View
 from nomad_mj.errors import NomadError
@@ -24,8 +26,10 @@ COMMANDS: dict[str, type[Any]] = {
     "train": Train,
     "evaluate": Evaluate,
     "record": Record,
+    "export": Export,
     "view": View,
     "reproduce": Reproduce,
+    "sweep": Sweep,
     "benchmark": Benchmark,
     "room": MakeRoom,
     "check": Check,

@@ -68,12 +68,20 @@ class TaskOptions:
     @contextmanager
     def path_finding(self) -> Generator[PathFinding, None, None]:
         """Load the path-finding environment and close it in the end."""
-        task, place = self._task_kwargs(), self._goal_place()
-        env = nomad_mj.load("path_finding", self.room, self.robot, task_kwargs=task, goal=place)
+        env = nomad_mj.load("path_finding", **self.load_options())
         try:
             yield env
         finally:
             env.close()
+
+    def load_options(self) -> dict[str, Any]:
+        """Return the arguments of `nomad_mj.load`, and of Gymnasium's environments."""
+        return {
+            "room": self.room,
+            "robot": self.robot,
+            "task_kwargs": self._task_kwargs(),
+            "goal": self._goal_place(),
+        }
 
     def _task_kwargs(self) -> dict[str, Any]:
         moving: dict[str, Any] = {"moving_goal": MovingGoal()} if self.moving_goal else {}

@@ -1,6 +1,6 @@
 """``nomad-mj train``."""
 
-from contextlib import closing
+from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from nomad_agents.cli.common import console, interruptible, output_file, print_j
 from nomad_agents.cli.progress import TrainingProgress
 from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.cli.train_deep import run_deep_training
+from nomad_agents.curves import Curves
 from nomad_agents.deep import LEARNERS
 from nomad_agents.deep.environment import make_env
 from nomad_agents.deep.extra import require_extra
@@ -23,7 +24,7 @@ from nomad_mj.envs import PathFinding
 from nomad_mj.errors import CheckpointError, ConfigError
 
 _OF_REACTIVE_PLANNER = ("config", "max_passes", "max_decisions", "resume")
-_OF_DEEP_LEARNERS = ("observation", "decisions", "tensorboard")
+_OF_DEEP_LEARNERS = ("observation", "decisions")
 
 
 @dataclass(frozen=True)
@@ -41,10 +42,10 @@ class Train(TaskOptions):
     """Parameters: faithful (the paper's) or tuned (better ones found since)."""
     observation: str = "situation"
     """What a deep learner is shown: situation (26 numbers) or ranges (all range readings)."""
-    decisions: int = 20_000
+    decisions: int = 10_000
     """A deep learner learns from so many decisions."""
     tensorboard: str = ""
-    """Folder for a deep learner's curves, for TensorBoard."""
+    """Folder for the curves of the training, for TensorBoard."""
     seed: int = 0
     """Of all randomness."""
     max_passes: int = 100
@@ -74,7 +75,7 @@ class Train(TaskOptions):
     def _train_deep(self) -> int:
         screen, settings = console(json_wanted=self.json), LEARNERS[self.agent]()
         require_budget(self.decisions, 0, self.seed)
-        require_extra(*(["tensorboard"] if self.tensorboard else []))
+        require_extra(curves=bool(self.tensorboard))
         with self.path_finding() as test, interruptible():
             name = f"{test.scene.arena.name}_{self.agent}_{self.observation}_{self.seed}"
             path = output_file(self.out, name, ".npz")
@@ -90,7 +91,7 @@ class Train(TaskOptions):
                     path,
                     screen,
                     self.conditions(),
-                    Path(self.tensorboard) if self.tensorboard else None,
+                    Path(self.tensorboard) / name if self.tensorboard else None,
                 )
         told = f"solved {report['solved']} of {report['starts']} starts"
         screen.print(f"{told} after {report['decisions']} decisions: {path}", soft_wrap=True)
@@ -106,16 +107,23 @@ class Train(TaskOptions):
         with self.path_finding() as env, interruptible():
             name = f"{env.scene.arena.name}_{ReactivePlanner.name}_{self.seed}"
             path = output_file(self.out, name, ".npz")
-            if self.resume and path.exists():
-                agent, training = self._resume(env, path)
-            else:
-                agent, training = self._begin(env), Training()
-            run_training(env, agent, settings, training, path, screen, self.conditions())
+            resume = self.resume and path.exists()
+            agent, training = self._resume(env, path) if resume else (self._begin(env), Training())
+            with self._curves(name, resume=resume) as curves:
+                run_training(
+                    env, agent, settings, training, path, screen, self.conditions(), curves
+                )
             report = training_report(env, agent, training)
             screen.print(f"{_verdict(report, training)}: {path}", soft_wrap=True)
         if self.json:
             print_json(report)
         return 0
+
+    def _curves(self, name: str, *, resume: bool) -> AbstractContextManager[Curves | None]:
+        """Return what writes the curves of a run, None where none are wanted."""
+        if not self.tensorboard:
+            return nullcontext()
+        return Curves(Path(self.tensorboard) / name, resume=resume)
 
     def _begin(self, env: PathFinding) -> ReactivePlanner:
         """Return the agent to train: a new one, or what a checkpoint has learnt elsewhere."""
@@ -169,6 +177,7 @@ def run_training(
     path: Path,
     screen: Console,
     conditions: dict[str, Any],
+    curves: Curves | None = None,
 ) -> None:
     """Train with a progress bar; write a checkpoint after each pass and at the end.
 
@@ -181,18 +190,24 @@ def run_training(
         scene = env.scene
         state = {**asdict(training), "seed": settings.seed}
         names = scene.arena.name, scene.robot.name
+        if curves is not None:
+            curves.flush()
         save_checkpoint(path, agent, *names, state, conditions)
 
     with TrainingProgress(screen, len(env.scene.arena.starts)) as progress:
 
         def after_episode(now: Training) -> None:
             progress.show(now, agent)
+            if curves is not None:
+                curves.add(now, agent)
             if now.next_start == 0:
                 save()
 
         save()
+        if curves is not None:
+            curves.begin(training)
         try:
-            train(env, agent, settings, training, after_episode)
+            train(env, agent, settings, training, after_episode, curves and curves.watch)
         finally:
             save()
 

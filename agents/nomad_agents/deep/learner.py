@@ -17,6 +17,7 @@ from stable_baselines3.common.noise import NormalActionNoise
 from torch import nn
 from typing_extensions import Self
 
+from nomad_agents.curves import curves_folder
 from nomad_agents.deep.agent import DeepAgent
 from nomad_agents.deep.environment import task_of
 from nomad_agents.deep.policy import Policy
@@ -45,18 +46,20 @@ class Learner:
         self._env = env
         self._seed = seed
         self._log_folder = log_folder
-        self._stack = ExitStack()
 
     def __enter__(self) -> Self:
         task_of(self._env)
-        self._stack.enter_context(_own_chance())
-        self._stack.enter_context(_one_thread())
-        self.model = make_model(self._settings, self._env, self._seed)
-        logger = Logger(None, [])
-        if self._log_folder is not None:
-            logger = configure(str(self._log_folder), ["tensorboard"])
-        self.model.set_logger(logger)
-        self._stack.callback(logger.close)
+        with ExitStack() as stack:
+            stack.enter_context(_own_chance())
+            stack.enter_context(_one_thread())
+            self.model = make_model(self._settings, self._env, self._seed)
+            logger = Logger(None, [])
+            if self._log_folder is not None:
+                with curves_folder(self._log_folder, resume=False) as folder:
+                    logger = configure(str(folder), ["tensorboard"])
+            self.model.set_logger(logger)
+            stack.callback(logger.close)
+            self._stack = stack.pop_all()
         return self
 
     def __exit__(self, *error: object) -> None:

@@ -83,7 +83,7 @@ class PpoSettings:
     hidden, gamma, learning_rate, batch_size, goal_bonus, episode_decisions
         As of SAC and TD3.
     rollout : int
-        Decisions between two rounds of updates.
+        Decisions between two rounds of updates; what is left over at the end is not learnt from.
     epochs : int
         Passes over a rollout in a round of updates.
     gae_lambda : float

@@ -82,15 +82,18 @@ def train_deep(
     after_decision : callable, optional
         Called with it; what it raises ends the training.
     log_folder : Path, optional
-        Where Stable-Baselines3 writes curves for TensorBoard.
+        Where Stable-Baselines3 writes curves for TensorBoard; those of a training before are
+        deleted.
 
     Raises
     ------
     ConfigError
         PyTorch or Stable-Baselines3 is not installed; an option that makes no sense.
+    OutputError
+        `log_folder` cannot be written.
     """
     require_budget(decisions, every, seed)
-    require_extra(*(["tensorboard"] if log_folder is not None else []))
+    require_extra(curves=log_folder is not None)
     from nomad_agents.deep.learner import Learner  # takes seconds: it imports PyTorch
 
     training = DeepTraining() if training is None else training

@@ -17,7 +17,7 @@ EXEMPLARS = 500
 _DRIVE: FloatArray = np.array([0.25, 0.4, 0.0])  # round in a circle: touches nothing
 
 
-def _timed(work: Callable[[], object], repeats: int) -> float:
+def timed(work: Callable[[], object], repeats: int) -> float:
     """Return the seconds that `repeats` calls take."""
     began = time.perf_counter()
     for _ in range(repeats):
@@ -47,7 +47,7 @@ def control_step_ratio(room: str, blocks: int = 40, steps: int = 50) -> float:
     env.reset(start=0)
     bare = BareLoop(env.task.scene)
     ratios = [
-        _timed(lambda: env.step(_DRIVE), steps) / _timed(bare.step, steps) for _ in range(blocks)
+        timed(lambda: env.step(_DRIVE), steps) / timed(bare.step, steps) for _ in range(blocks)
     ]
     env.close()
     return float(np.median(ratios))
@@ -65,7 +65,7 @@ def training_ratio(room: str, decisions: int = 400) -> float:
             nonlocal bare_s, steps
             episode = round(training.sim_s / CONTROL_TIMESTEP) - steps
             steps += episode
-            bare_s += _timed(bare.step, episode)
+            bare_s += timed(bare.step, episode)
 
         steps = 0
         training = Training()
@@ -104,6 +104,6 @@ def decision_times(
         def think() -> None:
             plan(percept, layout.radius, grid, config.action, config.planner)
 
-        reaction = [_timed(react, 1) for _ in range(repeats)]
-        planning = [_timed(think, 1) for _ in range(repeats)]
+        reaction = [timed(react, 1) for _ in range(repeats)]
+        planning = [timed(think, 1) for _ in range(repeats)]
     return float(np.median(reaction)), float(np.median(planning))

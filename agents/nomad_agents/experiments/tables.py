@@ -1,5 +1,6 @@
 """The table of an experiment: the paper's numbers, ours over all runs, and the baselines'."""
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -108,7 +109,7 @@ def number_cell(value: float, digits: int) -> str:
 
 
 def as_rich(table: TextTable) -> rich.table.Table:
-    """Return a table for the terminal; without means where no row has one."""
+    """Return a table for the terminal; an experiment's without the mean where no row has one."""
     kept = [
         number
         for number, heading in enumerate(table.headings)
@@ -117,8 +118,8 @@ def as_rich(table: TextTable) -> rich.table.Table:
     shown = rich.table.Table(title=Text(table.title))
     for number in kept:
         heading = table.headings[number]
-        narrow = _NARROW.get(heading, heading)
-        shown.add_column(Text(narrow), justify="right" if number else "left")
+        narrow = _NARROW.get(heading, re.sub(r": | (?=[\[(])", "\n", heading))
+        shown.add_column(Text(narrow), justify="right" if number else "left", overflow="fold")
     for row in table.rows:
         shown.add_row(*(Text(row[number]) for number in kept))  # as text: brackets are no markup
     return shown

@@ -1,0 +1,163 @@
+"""What `gymnasium.make_vec` makes: the vector environments of both tasks."""
+
+import math
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+from gymnasium import spaces
+from gymnasium.vector import AutoresetMode
+
+from nomad_mj.batch import BatchMotor, load_batch
+from nomad_mj.batch.load import Goals, Rooms
+from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
+from nomad_mj.errors import ConfigError
+from nomad_mj.gym.account import Account, motor_measures, move_measures
+from nomad_mj.gym.base import refuse_observation
+from nomad_mj.gym.everything import EverythingObserver
+from nomad_mj.gym.motor import motor_commands
+from nomad_mj.gym.observations import (
+    DrivenRangesObserver,
+    Observer,
+    RangesObserver,
+    SituationObserver,
+)
+from nomad_mj.gym.options import structure, task_options
+from nomad_mj.gym.reward import RewardOptions
+from nomad_mj.gym.vector import NavigationVectorEnv
+from nomad_mj.perception import SituationSpec
+from nomad_mj.types import FloatArray
+
+
+def path_finding_vector_env(
+    num_envs: int = 1,
+    room: Rooms = DEFAULT_ROOM,
+    robot: str = DEFAULT_ROBOT,
+    observation: Literal["situation", "ranges", "dict"] = "situation",
+    *,
+    task_kwargs: Mapping[str, Any] | None = None,
+    goal: Goals = None,
+    time_limit: float = 300.0,
+    situation: SituationSpec | Mapping[str, Any] | None = None,
+    reward: Literal["task", "sparse"] = "task",
+    goal_bonus: float = 0.0,
+    progress: float = 0.0,
+    threads: int | None = None,
+    autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+    max_episode_steps: int | None = None,
+    render_mode: str | None = None,
+) -> NavigationVectorEnv:
+    """Return many `PathFindingEnv` in one.
+
+    Parameters
+    ----------
+    num_envs : int
+        How many.
+    room, goal, threads
+        As of `nomad_mj.load_batch`: one room for all or several, likewise the goal.
+    robot, observation, task_kwargs, time_limit, situation, reward, goal_bonus, progress
+        As of `PathFindingEnv`.
+    autoreset_mode, max_episode_steps
+        As of `NavigationVectorEnv`.
+    render_mode : None
+        There are no pictures of many; the single environment draws.
+
+    Raises
+    ------
+    NomadError
+        Anything wrong with these, in one line.
+    """
+    _refuse_pictures(render_mode)
+    options = RewardOptions(reward, goal_bonus, progress)
+    spec = structure("situation", situation or SituationSpec(), SituationSpec)
+    refuse_observation(observation, ("situation", "ranges", "dict"))
+    limits = {"time_limit": time_limit}
+    given = task_options(task_kwargs)
+    batch = load_batch(
+        "path_finding", num_envs, room, robot, given, limits, goal=goal, threads=threads
+    )
+    observers: list[Observer] = [
+        SituationObserver(scene, spec)
+        if observation == "situation"
+        else RangesObserver(scene)
+        if observation == "ranges"
+        else EverythingObserver(scene, batch.single_observation_spec())
+        for scene in batch.scenes
+    ]
+    accounts = [
+        Account(task, world, observer, options, move_measures(task))
+        for task, world, observer in zip(batch.tasks, batch.worlds.worlds, observers, strict=True)
+    ]
+    space = spaces.Box(-1.0, 1.0, (2,), np.float32)
+    seen = _common([observer.space for observer in observers])
+    return NavigationVectorEnv(batch, accounts, seen, space, autoreset_mode, max_episode_steps)
+
+
+def motor_vector_env(
+    num_envs: int = 1,
+    room: Rooms = DEFAULT_ROOM,
+    robot: str = DEFAULT_ROBOT,
+    observation: Literal["ranges", "dict"] = "ranges",
+    *,
+    task_kwargs: Mapping[str, Any] | None = None,
+    goal: Goals = None,
+    time_limit: float = math.inf,
+    reward: Literal["task", "sparse"] = "task",
+    goal_bonus: float = 0.0,
+    progress: float = 0.0,
+    threads: int | None = None,
+    autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+    max_episode_steps: int | None = None,
+    render_mode: str | None = None,
+) -> NavigationVectorEnv:
+    """Return many `MotorEnv` in one; parameters and errors as of `path_finding_vector_env`."""
+    _refuse_pictures(render_mode)
+    options = RewardOptions(reward, goal_bonus, progress)
+    refuse_observation(observation, ("ranges", "dict"))
+    limits = {"time_limit": time_limit}
+    given = task_options(task_kwargs)
+    batch = load_batch("motor", num_envs, room, robot, given, limits, goal=goal, threads=threads)
+    observers: list[Observer] = [
+        DrivenRangesObserver(task.scene, task)
+        if observation == "ranges"
+        else EverythingObserver(task.scene, batch.single_observation_spec())
+        for task in batch.tasks
+    ]
+    accounts = [
+        Account(task, world, observer, options, motor_measures(task, world))
+        for task, world, observer in zip(batch.tasks, batch.worlds.worlds, observers, strict=True)
+    ]
+    motors = batch.action_spec().shape[1]
+    space = spaces.Box(-1.0, 1.0, (motors,), np.float32)
+    seen = _common([observer.space for observer in observers])
+    return _MotorVectorEnv(batch, accounts, seen, space, autoreset_mode, max_episode_steps)
+
+
+class _MotorVectorEnv(NavigationVectorEnv):
+    batch: BatchMotor
+
+    def _commands(self, actions: FloatArray) -> FloatArray:
+        spec = self.batch.action_spec()
+        return motor_commands(actions, spec.minimum, spec.maximum)
+
+
+def _refuse_pictures(render_mode: str | None) -> None:
+    if render_mode is not None:
+        raise ConfigError(
+            f"render mode {render_mode!r}: many at once are not drawn; use gymnasium.make, or "
+            "make_vec with vectorization_mode='sync'"
+        )
+
+
+def _common(seen: "list[spaces.Space[Any]]") -> "spaces.Space[Any]":
+    """Return a space that holds the observations of all: rooms differ in size."""
+    first = seen[0]
+    if isinstance(first, spaces.Dict):
+        parts = [space for space in seen if isinstance(space, spaces.Dict)]
+        return spaces.Dict({name: _common([part[name] for part in parts]) for name in first})
+    if not isinstance(first, spaces.Box):
+        return first
+    boxes = [space for space in seen if isinstance(space, spaces.Box)]
+    low = np.minimum.reduce([box.low for box in boxes])
+    high = np.maximum.reduce([box.high for box in boxes])
+    return spaces.Box(low, high, dtype=first.dtype.type)

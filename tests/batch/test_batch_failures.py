@@ -1,0 +1,52 @@
+"""What cannot be loaded, and simulations that diverge."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from dm_control.rl.control import PhysicsError
+from identity import check_same, singles
+
+from nomad_mj import NomadError, load_batch
+
+
+@pytest.mark.parametrize("rooms", [["paper_room"], ["paper_room", "hall"]])
+def test_a_world_that_diverges_is_named_and_all_begin_anew(rooms: list[str]) -> None:
+    options: dict[str, Any] = {"random": 3}
+    with load_batch("motor", 4, rooms, task_kwargs=options, threads=2) as many:
+        many.reset()
+        commands = np.zeros(many.action_spec().shape)
+        many.step(commands)
+        wrong = commands.copy()
+        wrong[2, 0] = np.nan
+        with pytest.raises(PhysicsError, match=r"^world 2: the simulation diverged at .*BADCTRL"):
+            many.step(wrong)
+        assert many.time_step().last().all()
+        assert many.step(commands).first().all()
+        told = many.reset(seed=0)
+        ones = singles("motor", [rooms[w % len(rooms)] for w in range(4)], "nomad200", {})
+        check_same(told, [one.reset() for one in ones], "reset")
+        told = many.step(commands)
+        check_same(told, [one.step(commands[0]) for one in ones], "step")
+        for one in ones:
+            one.close()
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"count": 0}, "count 0: must be 1, 2, 3, ..."),
+        ({"count": 2, "threads": 1.5}, "threads 1.5: must be 1, 2, 3, ..."),
+        ({"room": []}, "room: the list of rooms is empty"),
+        ({"count": 2, "room": ["hall", "nowhere"]}, "unknown room 'nowhere'; there are"),
+        ({"count": 3, "goal": [None, (5, 5)]}, "goal: there are 2, but 3 worlds"),
+        ({"count": 1, "task_kwargs": {"nosie": 1}}, "unknown task option 'nosie'; there are"),
+        ({"count": 1, "environment_kwargs": {"time_limit": -1}}, "time limit -1: must be above 0"),
+        ({"task_name": "flying"}, "unknown task 'flying'; there are: motor, path_finding"),
+        ({"count": 1, "task_kwargs": {"random": "x"}}, "seed 'x': must be a whole number"),
+    ],
+)
+def test_what_cannot_be_loaded_is_told_in_one_line(options: dict[str, Any], says: str) -> None:
+    with pytest.raises(NomadError) as caught:
+        load_batch(**options)
+    assert says in str(caught.value) and "\n" not in str(caught.value)
