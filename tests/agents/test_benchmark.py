@@ -15,7 +15,7 @@ from nomad_agents.cli.main import main
 
 Call = Callable[..., int]
 AGENTS = ("straight", "reactive_planner:tuned")
-SMALL = ("--seeds", "2", "--starts", "3", "--check-starts", "2", "--budget", "20")
+SMALL = ("--seeds", "2", "--starts", "2", "--check-starts", "1", "--budget", "10")
 
 
 @pytest.fixture
@@ -59,14 +59,14 @@ def test_all_that_is_promised_is_written(
     table = pq.read_table(folder / "runs.parquet")
     assert table.num_rows == 4
     assert table.column("spl").to_pylist() == [float(row["spl"]) for row in rows]
-    assert pq.read_table(folder / "episodes.parquet").num_rows == 4 * 3
+    assert pq.read_table(folder / "episodes.parquet").num_rows == 4 * 2
     names = {path.name for path in (folder / "figures").iterdir()}
     for name in ("intervals_spl", "intervals_success_rate", "profiles_spl", "efficiency_small"):
         assert {f"{name}.pdf", f"{name}.png"} <= names
     tables = (folder / "tables.md").read_text()
     assert "## small: driving" in tables and "## small: learning" in tables
     page = (whole / "benchmark.html").read_text()
-    assert page.count("data:image") == 4 + 1 - 1 and "nomad-mj benchmark --agents straight" in page
+    assert page.count("data:image/png") == 4 and "nomad-mj benchmark --agents straight" in page
 
 
 def test_learners_are_checked_from_the_beginning_and_after_each_pass(whole: Path) -> None:
@@ -90,26 +90,23 @@ def test_a_second_call_does_nothing_but_read(call: Call, whole: Path) -> None:
     assert (whole / "benchmark.html").read_bytes() == page
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
 def test_killed_and_started_again_it_makes_the_same_tables(
-    call: Call, whole: Path, small_room: Path, tmp_path: Path, number: int
+    call: Call, whole: Path, small_room: Path, tmp_path: Path
 ) -> None:
     words = ["benchmark", "--agents", *AGENTS, "--rooms", str(small_room), *SMALL, "--curves"]
+    words += ["--jobs", "1", "--out", str(tmp_path)]
     process = subprocess.Popen(
-        [sys.executable, "-m", "nomad_agents.cli.main", *words, "--jobs", "1"]
-        + ["--out", str(tmp_path)],
+        [sys.executable, "-m", "nomad_agents.cli.main", *words],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
-        # A shell lets what it runs in the background ignore Ctrl-C, and so would this.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     runs = tmp_path / "benchmark" / "runs"
     began = time.monotonic()
     while not list(runs.glob("*.json")):
         assert time.monotonic() - began < 120 and process.poll() is None
         time.sleep(0.01)
-    process.send_signal(number)
-    assert process.wait(timeout=30) in (130, -number)
+    process.kill()
+    assert process.wait(timeout=30) == -signal.SIGKILL
     assert not (tmp_path / "benchmark.html").exists() and len(list(runs.glob("*.json"))) < 4
     assert call(out=tmp_path) == 0
     assert content(tmp_path) == content(whole)
@@ -141,7 +138,7 @@ def test_a_deep_learner_without_its_packages_is_told_in_one_line(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("nomad_agents.deep.extra.NEEDED", ("no_such_package",))
+    monkeypatch.setitem(sys.modules, "stable_baselines3", None)  # as if it were not installed
     assert call("--agents", "sac", out=tmp_path) == 2
     error = capsys.readouterr().err
-    assert "deep learners need no_such_package" in error and error.count("\n") == 1
+    assert "pip install 'nomad-mj[deep]'" in error and error.count("\n") == 1

@@ -1,20 +1,24 @@
 """The standard sets: the same rooms again, every start solvable, no start in two roles."""
 
+from contextlib import closing
 from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
-from nomad_agents.benchmark.checks import CHECK_SEED
+from nomad_agents.benchmark.checks import CHECK_SEED, Checks
 from nomad_agents.benchmark.conditions import CONDITIONS, find_condition
-from nomad_agents.benchmark.learners import LEARNERS, find_learner, usual_agents
+from nomad_agents.benchmark.learners import LEARNERS, Lesson, find_learner, usual_agents
 from nomad_agents.benchmark.plan import MOST_SEEDS, Plan, plan_runs
 from nomad_agents.benchmark.sets import SETS, Case, find_set, room_sets, write_room
 from nomad_agents.evaluation import draw_starts
 from nomad_agents.experiments.measures import UNSEEN_SEED, unseen_starts
-from nomad_agents.training import stream
+from nomad_agents.reactive_planner import ReactivePlanner
+from nomad_agents.registry import find_config
+from nomad_agents.training import Training, TrainingConfig, stream, train
 
 import nomad_mj
+from nomad_mj.envs import PathFinding
 from nomad_mj.errors import ConfigError, NomadError, UnknownNameError
 from nomad_mj.scene import build_scene
 
@@ -83,6 +87,25 @@ def test_training_checks_and_evaluation_share_no_start_and_no_stream() -> None:
     assert all(abs(a - b) > MOST_SEEDS for a, b in combinations(bases, 2))
     words = {tuple(stream(base, 11, 0).generate_state(4)) for base in bases}
     assert len(words) == len(bases)
+
+
+def test_learning_goes_on_to_the_same_bits_whether_it_is_checked_or_not(small_room: Path) -> None:
+    def opened(**_: object) -> closing[PathFinding]:
+        return closing(nomad_mj.load("path_finding", small_room))
+
+    learner, variant = find_learner("reactive_planner:tuned")
+    with opened() as env, opened() as other:
+        checks = Checks(env, 1, 0, 4, whole=True)
+        lesson = Lesson(variant, 3, 12, opened, {"room": small_room}, checks)
+        agent, row = learner.learn(lesson)
+        alone = ReactivePlanner(other.scene.robot.layout, find_config(variant))
+        training = train(other, alone, TrainingConfig(3, max_decisions=12), Training())
+    assert isinstance(agent, ReactivePlanner) and len(checks.curve) >= 2
+    assert training.decisions == row["learn_decisions"] == checks.curve[-1]["decisions"]
+    assert training.plannings == row["learn_plannings"]
+    held = agent.network.arrays()
+    for name, array in alone.network.arrays().items():
+        assert np.array_equal(array, held[name]), name
 
 
 def test_a_plan_is_every_agent_in_every_task_seed_by_seed(tmp_path: Path) -> None:

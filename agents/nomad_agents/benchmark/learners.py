@@ -193,7 +193,7 @@ class DeepLearner(Learner):
 
         def evaluate(agent: DeepAgent, decisions: int, sim_s: float) -> None:
             if checks.due(decisions) or decisions >= lesson.budget:
-                checks.take(agent, **_spent(training))
+                checks.take(agent, None, **_spent(training))
 
         every = min(self._OFTEN if checks.whole else self._EVERY, lesson.budget)
         with closing(env):

@@ -48,7 +48,7 @@ class Benchmark:
     """Unseen starts that every run is evaluated from."""
     check_starts: int = 10
     """Other unseen starts, from which learners are checked now and then while they learn."""
-    budget: int = 20000
+    budget: int = 10000
     """Decisions of learning, at most."""
     curves: bool = False
     """Check learners all along, not only until 90 % are mastered, for whole learning curves."""
