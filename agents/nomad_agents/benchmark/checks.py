@@ -38,6 +38,8 @@ class Checks:
     ----------
     whole : bool
         As given.
+    latest : float
+        Decisions of learning at the newest check; -1 before the first.
     curve : list of dict
         One entry a check: ``decisions`` and ``sim_s`` of learning so far, what learning has cost
         so far, and ``success_rate``, ``strict_success_rate`` and ``spl``; the same with
@@ -53,6 +55,7 @@ class Checks:
         self._decisions = decisions
         self.whole = whole
         self._next = 0.0
+        self.latest = -1.0
         self._mastered: set[str] = set()
         self.curve: list[Row] = []
 
@@ -83,7 +86,8 @@ class Checks:
         if any(key.endswith("success_rate") for key in entry):
             self.curve.append(entry)
         factor = _CLOSE if self.whole else _APART
-        self._next = max(_FIRST, learning["decisions"] * factor)
+        self.latest = learning["decisions"]
+        self._next = max(_FIRST, self.latest * factor)
 
 
 def until_mastered(curve: Sequence[Row]) -> Row:

@@ -33,8 +33,7 @@ class Efficiency(NamedTuple):
 def sample_efficiency(results: Sequence[Result], kind: str = "") -> Efficiency | None:
     """Return the curve of some runs, None if none was checked while learning.
 
-    A run that is over stays as it ended, so that the median is always that of all runs; between
-    two checks it is as at the one before.
+    A run that is over stays as it ended, so that the median is always that of all runs.
 
     Parameters
     ----------
@@ -50,10 +49,7 @@ def sample_efficiency(results: Sequence[Result], kind: str = "") -> Efficiency |
     begun = max(curve[0, 0] for curve in curves)
     decisions = np.unique(np.concatenate([curve[:, 0] for curve in curves]))
     decisions = decisions[decisions >= begun]
-    places = [np.searchsorted(curve[:, 0], decisions, side="right") - 1 for curve in curves]
-    rates = np.array(
-        [curve[place, 1] for curve, place in zip(curves, places, strict=True)]
-    )  # (runs, n)
+    rates = np.array([np.interp(decisions, *curve.T) for curve in curves])  # (runs, n)
     low, median, high = np.percentile(rates, [25, 50, 75], axis=0)
     first = [curve[curve[:, 1] >= MASTERED, 0] for curve in curves]
     mastered = float(np.median([each[0] if len(each) else np.inf for each in first]))

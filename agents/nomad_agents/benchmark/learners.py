@@ -124,7 +124,7 @@ class ReactionLearner(Learner):
 
     name = ReactivePlanner.name
     variants = tuple(CONFIGS)
-    _MOST_DECISIONS = 2000  # what is not learnt by then is not learnt in ten times as many
+    _MOST_DECISIONS = 1500  # four passes or so; what is learnt at all is learnt by then
     _MOST_PASSES = 40
 
     def parameters(self, variant: str) -> Any:
@@ -152,6 +152,8 @@ class ReactionLearner(Learner):
             most = min(lesson.budget, self._MOST_DECISIONS)
             config = TrainingConfig(lesson.seed, max_passes=self._MOST_PASSES, max_decisions=most)
             row, _ = learn(env, agent, config, watch)
+            if latest.decisions > checks.latest:  # it gave up within a pass
+                check(latest)
         row |= {f"learn_{name}": value for name, value in _spent(latest).items()}
         if row["learn_solved_all"]:
             row |= {"decisions_to_test": latest.decisions, "sim_s_to_test": latest.sim_s}
@@ -191,7 +193,7 @@ class DeepLearner(Learner):
 
         def evaluate(agent: DeepAgent, decisions: int, sim_s: float) -> None:
             if checks.due(decisions) or decisions >= lesson.budget:
-                checks.take(agent, **_spent(training))
+                checks.take(agent, None, **_spent(training))
 
         every = min(self._OFTEN if checks.whole else self._EVERY, lesson.budget)
         with closing(env):

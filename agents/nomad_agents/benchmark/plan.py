@@ -25,8 +25,8 @@ class Plan:
         The tasks.
     robots : tuple of str
         Names or files.
-    seeds : int
-        Runs of each, with the seeds 0, 1, ...
+    seeds, deep_seeds : int
+        Runs of each, with the seeds 0, 1, ...; of each deep learner, if that is less.
     starts, check_starts, budget, whole_curves
         As of `BenchmarkRun`.
     """
@@ -35,6 +35,7 @@ class Plan:
     sets: tuple[TaskSet, ...]
     robots: tuple[str, ...]
     seeds: int
+    deep_seeds: int
     starts: int
     check_starts: int
     budget: int
@@ -43,7 +44,7 @@ class Plan:
     def __post_init__(self) -> None:
         if not 1 <= self.seeds <= MOST_SEEDS:
             raise ConfigError(f"seeds {self.seeds}: must be 1 to {MOST_SEEDS}")
-        for name in ("starts", "check_starts", "budget"):
+        for name in ("deep_seeds", "starts", "check_starts", "budget"):
             if getattr(self, name) < 1:
                 raise ConfigError(f"{name} {getattr(self, name)}: must be 1 or more")
         for name in ("agents", "sets", "robots"):
@@ -72,12 +73,13 @@ def plan_runs(plan: Plan, folder: Path) -> list[BenchmarkRun]:
         for robot in plan.robots:
             build_scene(room, robot)  # whatever is wrong with them is said now, and once
     return [
-        _run(plan, each, case, rooms[case], robot, agent, variant, seed)
+        _run(plan, each, case, rooms[case], robot, learner.name, variant, seed)
         for seed in range(plan.seeds)
         for each in plan.sets
         for case in each.cases
         for robot in dict.fromkeys(plan.robots)
-        for agent, variant in ((learner.name, variant) for learner, variant in agents)
+        for learner, variant in agents
+        if seed < plan.deep_seeds or not learner.deep
     ]
 
 

@@ -43,7 +43,9 @@ def performance_profile(strata: Sequence[FloatArray], thresholds: npt.ArrayLike)
         No run at all.
     """
     taus = np.asarray(thresholds, dtype=np.float64)
-    above = [values[:, None] > taus for values in strata if len(values)]  # (runs, n)
+    above = [  # (runs, n)
+        (values[:, None] > taus).astype(np.float64) for values in strata if len(values)
+    ]
     runs = sum(len(each) for each in above)
     if not runs:
         raise ValueError("a performance profile needs a run at least")

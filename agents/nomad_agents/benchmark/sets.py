@@ -19,9 +19,9 @@ from nomad_mj.rooms import (
     wide_room,
 )
 
-TIME_LIMIT = 150.0  # [s]: some five times what a good way takes
+TIME_LIMIT = 120.0  # [s]: some four times what a good way takes
 DECISIONS = 100
-_MAZE_TIME_LIMIT, _MAZE_DECISIONS = 300.0, 200
+_MAZE_TIME_LIMIT, _MAZE_DECISIONS = 240.0, 200
 _DIFFICULTY, _MAZE_DIFFICULTY = 0.5, 0.25
 
 

@@ -42,11 +42,13 @@ class Benchmark:
     """Names of robots, or MJCF files."""
     seeds: int = 3
     """Runs of each agent in each task, with the seeds 0, 1, ..."""
-    starts: int = 25
+    deep_seeds: int = 5
+    """Of deep learners, if that is less than --seeds."""
+    starts: int = 20
     """Unseen starts that every run is evaluated from."""
     check_starts: int = 10
     """Other unseen starts, from which learners are checked now and then while they learn."""
-    budget: int = 20000
+    budget: int = 10000
     """Decisions of learning, at most."""
     curves: bool = False
     """Check learners all along, not only until 90 % are mastered, for whole learning curves."""
@@ -111,6 +113,7 @@ class Benchmark:
             self._sets(),
             self.robots,
             self.seeds,
+            self.deep_seeds,
             self.starts,
             self.check_starts,
             self.budget,
@@ -157,7 +160,7 @@ class Benchmark:
         for name in ("agents", "sets", "rooms", "robots"):
             if getattr(self, name) != getattr(usual, name):
                 words += [f"--{name}", *getattr(self, name)]
-        for name in ("seeds", "starts", "check_starts", "budget"):
+        for name in ("seeds", "deep_seeds", "starts", "check_starts", "budget"):
             if getattr(self, name) != getattr(usual, name):
                 words += [f"--{name.replace('_', '-')}", str(getattr(self, name))]
         words += [f"--{name}" for name in ("curves", "quick") if getattr(self, name)]

@@ -14,6 +14,7 @@ from nomad_agents.experiments.figures.style import FAINT, INK, grid, legend_belo
 
 _WIDTH, _HEIGHT = 8.6, 5.4  # [in]
 _FIRST = 10  # decisions: what was there before learning is drawn here
+_THIN = 1.2  # [pt], a line beside another of the same agent
 _APART = 4.2  # percent between two words at the right
 
 
@@ -65,7 +66,7 @@ def _draw(axes: Axes, curve: Efficiency, seen: Look, last: float, *, thin: bool 
     low, median, high = (
         100 * np.append(each, each[-1]) for each in (curve.low, curve.median, curve.high)
     )
-    width = 1.2 if thin else seen.width
+    width = _THIN if thin else seen.width
     axes.step(decisions, median, where="post", color=seen.colour, ls=seen.style, lw=width, zorder=4)
     if not thin:
         axes.fill_between(decisions, low, high, color=seen.colour, alpha=0.14, lw=0)
@@ -80,7 +81,7 @@ def _draw(axes: Axes, curve: Efficiency, seen: Look, last: float, *, thin: bool 
 def _name_levels(axes: Axes, levels: Mapping[str, float]) -> None:
     """Name the levels beside the figure, none over another."""
     ordered = sorted(levels.items(), key=lambda item: item[1])
-    for (label, level), place in zip(ordered, _spread_out([v for _, v in ordered]), strict=True):
+    for (label, level), place in zip(ordered, spread_out([v for _, v in ordered]), strict=True):
         axes.annotate(
             spoken(label),
             (1.0, 100 * level),
@@ -93,7 +94,7 @@ def _name_levels(axes: Axes, levels: Mapping[str, float]) -> None:
         )
 
 
-def _spread_out(levels: Sequence[float]) -> list[float]:
+def spread_out(levels: Sequence[float]) -> list[float]:
     """Return places [%] near rising levels, far enough from each other and not above all."""
     places: list[float] = []
     for level in levels:
@@ -107,14 +108,17 @@ def _spread_out(levels: Sequence[float]) -> list[float]:
 
 def _signs(curves: Mapping[str, Efficiency], unaided: Mapping[str, Efficiency]) -> list[Line2D]:
     signs: list[Line2D] = []
-    for label in curves:
+
+    def add(label: str, words: str, width: float) -> None:
         seen = look(label)
-        shown = {"color": seen.colour, "ls": seen.style}
+        signs.append(Line2D([], [], color=seen.colour, ls=seen.style, lw=width, label=words))
+
+    for label in curves:
+        name = spoken(label)
         if label in unaided:
-            name = spoken(label)
-            signs.append(Line2D([], [], **shown, lw=seen.width, label=f"{name}: reactions alone"))
-            signs.append(Line2D([], [], **shown, lw=1.2, label=f"{name}: with its planner"))
+            add(label, f"{name}: reactions alone", look(label).width)
+            add(label, f"{name}: with its planner", _THIN)
         else:
-            signs.append(Line2D([], [], **shown, lw=seen.width, label=spoken(label)))
+            add(label, name, look(label).width)
     signs.append(Line2D([], [], color=INK, ls=(0, (1, 1.6)), lw=1.4, label="does not learn"))
     return signs
