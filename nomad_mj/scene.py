@@ -1,5 +1,6 @@
 """Put a robot into a room: two MJCF files and the shared scene become one compiled model."""
 
+import copy
 import warnings
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
@@ -10,7 +11,7 @@ from pathlib import Path
 import mujoco
 import shapely
 
-from nomad_mj.arenas import Arena, FloorPlan, check_arena
+from nomad_mj.arenas import Arena, FloorPlan, check_arena, near_model
 from nomad_mj.assets import find_robot, find_room, models_dir
 from nomad_mj.errors import ConfigError, ModelError
 from nomad_mj.guard import check_size
@@ -53,6 +54,8 @@ class Scene:
         Footprints of the room's obstacles, without those that move.
     moving : Moving
         The goal and the obstacles that move; false if none does.
+    near_model : mujoco.MjModel, optional
+        Of a large room what `Nearby` changes as the robot drives, to be copied for each simulation.
     """
 
     model: mujoco.MjModel
@@ -60,6 +63,11 @@ class Scene:
     arena: Arena
     plan: FloorPlan
     moving: Moving
+    near_model: mujoco.MjModel | None = None
+
+    def simulated(self) -> mujoco.MjModel:
+        """Return the model to simulate: of a large room a new copy of `near_model`."""
+        return self.model if self.near_model is None else copy.copy(self.near_model)
 
     @cached_property
     def free_space(self) -> shapely.Polygon:
@@ -111,18 +119,37 @@ def _sample_per_control_step(spec: mujoco.MjSpec, sub_steps: int) -> None:
             sensor.nsample = sub_steps - 1  # all but the last, which is in sensordata itself
 
 
-def _compile(room: mujoco.MjSpec, robot: mujoco.MjSpec) -> mujoco.MjModel:
-    """Return the model of both in the shared scene, its sensors sampling once a control step."""
+def _join(room: mujoco.MjSpec, robot: mujoco.MjSpec) -> tuple[mujoco.MjSpec, mujoco.MjModel]:
+    """Return both in the shared scene, sensors sampling once a control step, and their model."""
     spec = mujoco.MjSpec.from_file(str(models_dir() / "scene.xml"))
     with _quietly():  # scene.xml owns the options: a file's own serve only where it is opened alone
         spec.attach(room, prefix=ROOM_PREFIX, frame=spec.worldbody.add_frame())
         spec.attach(robot, prefix=PREFIX, frame=spec.worldbody.add_frame())
         _sample_per_control_step(spec, round(CONTROL_TIMESTEP / spec.option.timestep))
         model = spec.compile()
-    # The engine compares times without a tolerance: at the exact interval it skips samples.
+    _time_rays(model)
+    return spec, model
+
+
+def _time_rays(model: mujoco.MjModel) -> None:
+    """Let rays be cast once a control step.
+
+    The engine compares times without a tolerance: at the exact interval it skips samples.
+    """
     rays = model.sensor_type == mujoco.mjtSensor.mjSENS_RANGEFINDER
     model.sensor_interval[rays, 0] = CONTROL_TIMESTEP - 1e-9
-    return model
+
+
+def _near_model(
+    spec: mujoco.MjSpec, model: mujoco.MjModel, robot: RobotDescription
+) -> mujoco.MjModel | None:
+    """Return what to simulate of a large room; the spec is changed."""
+    with _quietly():
+        few = near_model(spec, model, robot.reach)
+    if few is not None:
+        _time_rays(few)
+        unclip_surfaces(few)
+    return few
 
 
 def _check_configs(moving_goal: object, moving_obstacles: object) -> None:
@@ -182,7 +209,7 @@ def build_scene(
         place_goal(room_spec, goal, moving_goal is not None)
     added = add_obstacles(room_spec, moving_obstacles) if moving_obstacles else ()
     try:
-        model = _compile(room_spec, robot_spec)
+        spec, model = _join(room_spec, robot_spec)
     except (ValueError, RuntimeError) as error:
         reason = " ".join(str(error).split())
         raise ModelError(
@@ -195,4 +222,4 @@ def build_scene(
     check_arena(plan, arena, description.layout.radius)
     half = description.limits.translate / 2  # the paper's limit
     moving = read_moving(model, arena.name, half, moving_goal, moving_obstacles, added)
-    return Scene(model, description, arena, plan, moving)
+    return Scene(model, description, arena, plan, moving, _near_model(spec, model, description))

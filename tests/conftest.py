@@ -4,6 +4,7 @@ import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import settings
 
@@ -85,3 +86,31 @@ def own_room(tmp_path_factory: pytest.TempPathFactory) -> OwnRoom:
         return path
 
     return write
+
+
+@pytest.fixture(scope="session")
+def wide_room(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a room of 30 x 30 m with a post every two metres: most is far from any robot."""
+    side = 30.0
+    places = np.arange(3.0, side - 1, 2)
+    posts = "".join(
+        f'<geom type="cylinder" size="0.15 0.45" pos="{x} {y} 0.45"/>'
+        for x in places
+        for y in places
+    )
+    walls = "".join(
+        f'<geom type="box" size="{a} {b} 0.45" pos="{x} {y} 0.45"/>'
+        for x, y, a, b in (
+            (15, -0.1, 15.2, 0.1),
+            (15, side + 0.1, 15.2, 0.1),
+            (-0.1, 15, 0.1, 15.2),
+            (side + 0.1, 15, 0.1, 15.2),
+        )
+    )
+    path = tmp_path_factory.mktemp("wide") / "wide.xml"
+    path.write_text(
+        f"<mujoco><worldbody>{walls}{posts}<site name='goal' pos='28 28 0'/>"
+        "<site name='start_0' pos='2 2 0'/><camera name='top' pos='15 15 39.8' fovy='45'/>"
+        "</worldbody></mujoco>"
+    )
+    return path

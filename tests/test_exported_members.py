@@ -23,7 +23,7 @@ PUBLIC = {
         "SAFE_CLEARANCE ActionSpec CarDrive Drive MotionConfig Move Outcome StraightMove "
         "SynchroDrive WheeledDrive displacement ramp_speed reinforcement"
     ),
-    "nomad_mj.arenas": "Arena FloorPlan Geodesic Nearby check_arena goal_site",
+    "nomad_mj.arenas": "Arena FloorPlan Geodesic Nearby check_arena goal_site near_model",
     "nomad_mj.movers": (
         "Drift Movers Moving MovingBody MovingGoal MovingObstacles Stroll Walk Walker Walkers "
         "add_obstacles place_goal read_moving"

@@ -4,6 +4,6 @@ from nomad_mj.arenas.arena import Arena, check_arena
 from nomad_mj.arenas.floor_plan import FloorPlan
 from nomad_mj.arenas.geodesic import Geodesic
 from nomad_mj.arenas.names import goal_site
-from nomad_mj.arenas.nearby import Nearby
+from nomad_mj.arenas.nearby import Nearby, near_model
 
-__all__ = ["Arena", "FloorPlan", "Geodesic", "Nearby", "check_arena", "goal_site"]
+__all__ = ["Arena", "FloorPlan", "Geodesic", "Nearby", "check_arena", "goal_site", "near_model"]

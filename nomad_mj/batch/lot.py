@@ -7,6 +7,7 @@ import numpy as np
 from dm_control.rl.control import PhysicsError
 from mujoco.batch import Batch, SimulationError
 
+from nomad_mj.arenas import Nearby
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.tasks import MotorConfig, NavigationPhysics
 from nomad_mj.tasks.infrared import Infrared
@@ -53,9 +54,14 @@ class Lot:
     def __init__(
         self, worlds: IntArray, scenes: list[Scene], config: MotorConfig, threads: int
     ) -> None:
-        model, robot = scenes[0].model, scenes[0].robot
         self.worlds = worlds
-        self._models = [scene.model for scene in scenes]
+        self._models = [scene.simulated() for scene in scenes]
+        self._near = {
+            row: Nearby(scene.model, model, scene.robot.reach)
+            for row, (scene, model) in enumerate(zip(scenes, self._models, strict=True))
+            if scene.near_model is not None
+        }
+        model, robot = self._models[0], scenes[0].robot
         self._batch = Batch(model, len(worlds), threads, persistent=True)
         self._batch.set_models(self._models)
         # Bound before the first call, or they would be zero after it.
@@ -89,7 +95,7 @@ class Lot:
         if first is other:
             return True
         try:
-            Batch(first.model, 1, 1).set_models([other.model])
+            Batch(first.simulated(), 1, 1).set_models([other.simulated()])
         except mujoco.FatalError:  # what the engine raises for another layout
             return False
         return _addresses(first) == _addresses(other)
@@ -122,6 +128,7 @@ class Lot:
             Naming the worlds that diverged.
         """
         batch, steps = self._batch, self._sub_steps
+        self._see_to_near(rows)
         self._ctrl[rows[:, None], self._controls] = commands
         ids = rows.astype(np.int32) if len(rows) < len(self.worlds) else None
         try:
@@ -137,6 +144,15 @@ class Lot:
             worlds = self.worlds[error.ids].tolist()
             raise PhysicsError(f"{_named(worlds)}: {batch.error(int(error.ids[0]))}") from None
         self._check(rows)
+
+    def _see_to_near(self, rows: IntArray) -> None:
+        """Let the models of large rooms hold what is near their robots."""
+        changed = False
+        for row in rows.tolist() if self._near else ():
+            if row in self._near:
+                changed |= self._near[row].update(*self.pose(row)[:2])
+        if changed:
+            self._batch.set_models(self._models)  # or the engine may not see it
 
     def _check(self, rows: IntArray) -> None:
         counts = self._batch.warning[:, :, 1]

@@ -61,6 +61,11 @@ class RobotDescription:
         """Largest speeds and accelerations."""
         return self.drive.limits
 
+    @property
+    def reach(self) -> float:
+        """From the robot's centre to the far end of its longest ray, at most [m]."""
+        return self.layout.radius + float(self.rays.maximum.max()) + 0.01
+
 
 def robot_geoms(model: mujoco.MjModel) -> list[int]:
     """Return the indices of the robot's geoms, those that collide and those that only show."""

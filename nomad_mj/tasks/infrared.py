@@ -47,10 +47,10 @@ class InfraredEffects:
             raise ConfigError("infrared effects: need a ring in rings")
 
 
-def reflectances(model: mujoco.MjModel) -> FloatArray:
-    """Return the reflectance of each geom, (ngeom,), in [0.01, 1]."""
-    rgba: FloatArray = np.array(model.geom_rgba, dtype=np.float64)
-    material = np.array(model.geom_matid)
+def reflectances(model: mujoco.MjModel, geoms: IntArray) -> FloatArray:
+    """Return the reflectance of some geoms (n,), each in [0.01, 1]."""
+    rgba: FloatArray = model.geom_rgba[geoms].astype(np.float64)
+    material = model.geom_matid[geoms]
     by_material = (material >= 0) & np.isclose(rgba, _UNSET).all(axis=1)
     rgba[by_material] = model.mat_rgba[material[by_material]]
     return np.clip(rgba[:, :3] @ _LUMINANCE, _DARKEST, 1.0)
@@ -98,12 +98,13 @@ class Infrared:
         sensors = np.searchsorted(model.sensor_adr, rays.address[self._rays])
         self._sites: list[int] = model.sensor_objid[sensors].tolist()
         self._bodies: list[int] = model.site_bodyid[self._sites].tolist()
-        self._farther: FloatArray = np.sqrt(effects.reference / reflectances(model))
+        self._reference = effects.reference
         self._struck = np.full(1, -1, dtype=np.int32)
 
     def judge(self, distances: FloatArray, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Change the distances of the rays, (R,) [m] from their sites, to those that they seem."""
         near = np.flatnonzero(distances[self._rays] < self._maximum).tolist()
+        struck: dict[int, int] = {}  # by ray
         for ray in near:
             site = self._sites[ray]
             along = data.site_xmat[site][2::3]
@@ -118,4 +119,8 @@ class Infrared:
                 self._struck,
             )
             if self._struck[0] >= 0:
-                distances[self._rays[ray]] *= self._farther[self._struck[0]]
+                struck[ray] = int(self._struck[0])
+        if struck:
+            # As the model is now: in a large room its geoms change, see `Nearby`.
+            light = reflectances(model, np.array([*struck.values()]))
+            distances[self._rays[[*struck]]] *= np.sqrt(self._reference / light)

@@ -1,6 +1,5 @@
 """The simulated robot, asked in its own terms: readings, encoders, pose."""
 
-import copy
 from typing import Any, Protocol
 
 import mujoco
@@ -15,6 +14,8 @@ from nomad_mj.scene import Scene
 from nomad_mj.tasks.infrared import Infrared, InfraredEffects
 from nomad_mj.tasks.readout import Readout
 from nomad_mj.types import FloatArray, IntArray, Pose
+
+_STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 
 
 class Posed(Protocol):
@@ -39,6 +40,10 @@ class NavigationPhysics(Physics):
     robot: RobotDescription
     grazing: float | None
     infrared: Infrared | None
+    whole: mujoco.MjModel | None
+    """All there is, if the model that is simulated holds only what is near: see `Nearby`."""
+    _near: Nearby | None = None
+    _picture: Physics | None = None  # of `whole`, made when it is first asked for
 
     @classmethod
     def from_scene(
@@ -52,37 +57,39 @@ class NavigationPhysics(Physics):
             The robot lacks a ring of `infrared`.
         """
         light = Infrared(infrared, scene.model, scene.robot) if infrared is not None else None
-        model = scene.model  # pictures go on drawing it while this hides what is far
-        if Nearby.may_help(model):
-            model = copy.copy(model)
-        physics = cls.from_model(wrapper.MjModel(model))
+        physics = cls.from_model(wrapper.MjModel(scene.simulated()))
         physics.robot, physics.grazing, physics.infrared = scene.robot, grazing, light
+        physics.whole = scene.model if scene.near_model is not None else None
         physics._bind()
         return physics
 
     def _reload_from_data(self, data: Any) -> None:
+        self._near = None
         super()._reload_from_data(data)
         if hasattr(self, "robot"):
             self._bind()
 
     def copy(self, share_model: bool = False) -> "NavigationPhysics":
         """Return an independent copy of this simulation in its present state."""
-        self._near.show_all()
-        other: NavigationPhysics = super().copy(share_model)
+        # Two robots in different places need slots of their own.
+        other: NavigationPhysics = super().copy(share_model and self.whole is None)
         other.robot, other.grazing, other.infrared = self.robot, self.grazing, self.infrared
+        other.whole = self.whole
         other._bind()
         return other
 
     def __getstate__(self) -> Any:
-        self._near.show_all()
-        return super().__getstate__(), self.robot, self.grazing, self.infrared
+        return super().__getstate__(), self.robot, self.grazing, self.infrared, self.whole
 
     def __setstate__(self, state: Any) -> None:
-        data, self.robot, self.grazing, self.infrared = state
+        data, self.robot, self.grazing, self.infrared, self.whole = state
         super().__setstate__(data)
 
     def free(self) -> None:
         """Free the simulation and its OpenGL contexts; it cannot be used any more."""
+        if self._picture is not None:
+            self._picture.free()
+            self._picture = None
         super().free()
         for name in (
             "_raw",
@@ -97,10 +104,8 @@ class NavigationPhysics(Physics):
     def _bind(self) -> None:
         """Look names up once: the control step reads plain arrays."""
         model, data = self.model.ptr, self.data.ptr
-        if hasattr(self, "_near"):
-            self._near.show_all()
-        farthest = float(self.robot.rays.maximum.max())
-        self._near = Nearby(model, self.robot.layout.radius + farthest + 0.01)
+        if self.whole is not None:
+            self._near = Nearby(self.whole, model, self.robot.reach)
         self._raw = (model, data)
         self._sensordata: FloatArray = data.sensordata
         self._history: FloatArray = data.history
@@ -111,6 +116,7 @@ class NavigationPhysics(Physics):
         self._readout = Readout.of(model, self.robot)
         self._ray_buffer = np.empty(len(self.robot.rays.address))
         self._bind_steering()
+        self._see_to_near()
         mujoco.mj_step1(model, data)  # dm_control has just computed a copy with its motors off
 
     def _bind_steering(self) -> None:
@@ -135,11 +141,19 @@ class NavigationPhysics(Physics):
         else:
             mujoco.mj_resetData(*self._raw)
 
+    def forward(self) -> None:
+        """Compute all that follows from the present state, with what is near the robot now."""
+        self._see_to_near()
+        super().forward()
+
+    def _see_to_near(self) -> None:
+        if self._near is not None:
+            self._near.update(*self.pose()[:2])
+
     def step(self, nstep: int = 1) -> None:
         """Advance by `nstep` physics steps; raise PhysicsError if the simulation diverges."""
         model, data = self._raw
-        if self._near.useful:
-            self._near.update(*self.pose()[:2])
+        self._see_to_near()
         mujoco.mj_step2(model, data)
         if nstep > 1:
             mujoco.mj_step(model, data, nstep - 1)
@@ -162,8 +176,16 @@ class NavigationPhysics(Physics):
 
     def render(self, *args: Any, **kwargs: Any) -> Any:
         """Draw all there is, however far; arguments as of dm_control's."""
-        self._near.show_all()
-        return super().render(*args, **kwargs)
+        if self.whole is None:
+            return super().render(*args, **kwargs)
+        if self._picture is None:
+            self._picture = Physics.from_model(wrapper.MjModel(self.whole))
+        model, data = self._picture.model.ptr, self._picture.data.ptr
+        state = np.empty(mujoco.mj_stateSize(model, _STATE))
+        mujoco.mj_getState(*self._raw, state, _STATE)
+        mujoco.mj_setState(model, data, state, _STATE)
+        self._picture.forward()
+        return self._picture.render(*args, **kwargs)
 
     def move_bodies(self, rows: IntArray, places: FloatArray) -> None:
         """Put mocap bodies, given their rows (n,), at places (n, 2) [m]; the next step sees it."""

@@ -1,5 +1,6 @@
 """World by world the batch is the single environment, to the bit."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -102,7 +103,6 @@ def test_contacts_are_the_same(room: str) -> None:
 
 
 def test_goals_and_large_rooms_are_the_same(own_room: OwnRoom) -> None:
-    """More boxes than the single environment lets its rays meet at once; see `Nearby`."""
     boxes = "".join(
         f'<geom type="box" size="0.1 0.1 0.5" pos="{-4 + x} {-4.5 + y} 0.5"/>'
         for x in range(9)
@@ -118,5 +118,25 @@ def test_goals_and_large_rooms_are_the_same(own_room: OwnRoom) -> None:
         for number in range(40):
             told = many.step(speeds)
             check_same(told, [one.step(speeds[0]) for one in ones], number)
+    for one in ones:
+        one.close()
+
+
+def test_each_world_simulates_what_is_near_its_own_robot(wide_room: Path) -> None:
+    rooms, starts = [wide_room] * 3, [(2.0, 2.0, 0.0), (20.0, 15.0, 0.0), (25.0, 24.0, 2.0)]
+    options = {"ends_at_goal": False, "infrared": InfraredEffects(("sonar",))}
+    ones = singles("motor", rooms, "nomad200", options)
+    with load_batch("motor", room=rooms, task_kwargs={**options, "random": 0}) as many:
+        assert many.scenes[0].near_model is not None
+        for begin in (starts, starts[1:] + starts[:1]):
+            first = [one.reset(start=start) for one, start in zip(ones, begin, strict=True)]
+            check_same(many.reset(starts=begin), first, "reset")
+            touched = 0.0
+            for number in range(90):
+                speeds = np.tile([0.6, 0.0, 0.1], (3, 1))
+                told = many.step(speeds)
+                check_same(told, [one.step(speeds[0]) for one in ones], number)
+                touched += told.observation["bumpers"].sum()
+            assert touched
     for one in ones:
         one.close()

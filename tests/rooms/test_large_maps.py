@@ -1,6 +1,8 @@
 """Measured maps, ragged and full of things, become few shapes near to what the map shows."""
 
 import math
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,40 +10,31 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+from office import RESOLUTION, office
 from scipy import ndimage
 from shapely import affinity
 
 from nomad_mj.arenas import FloorPlan
-from nomad_mj.rooms import FREE, OCCUPIED, UNKNOWN, Box, Cylinder, Occupancy, Polygon, room_of_map
+from nomad_mj.rooms import (
+    FREE,
+    OCCUPIED,
+    UNKNOWN,
+    Box,
+    Cylinder,
+    Occupancy,
+    Polygon,
+    furnish,
+    room_of_map,
+    to_mjcf,
+)
 from nomad_mj.rooms.islands import fit_islands
 from nomad_mj.rooms.places import floor_plan
 from nomad_mj.rooms.smooth import straighten, without_specks
+from nomad_mj.scene import build_scene
 
-RESOLUTION = 0.05
 MASKS = arrays.array_shapes(min_dims=2, max_dims=2, max_side=16).flatmap(
     lambda shape: arrays.arrays(np.bool_, shape)
 )
-
-
-def office(cells: int = 400, noise: float = 0.02) -> Occupancy:
-    """Return offices along corridors, with a table each and walls that are ragged by a cell."""
-    rng = np.random.default_rng(0)
-    grid = np.full((cells, cells), FREE, dtype=np.uint8)
-    rows, columns = np.indices(grid.shape)
-    for y in range(0, cells, 100):
-        grid[y : y + 3] = grid[y + 70 : y + 73] = OCCUPIED
-        grid[y + 70 : y + 73, 20::80] = grid[y + 70 : y + 73, 21::80] = OCCUPIED
-        for x in range(0, cells, 80):
-            grid[y : y + 70, x : x + 4] = OCCUPIED
-            grid[y + 70 : y + 73, x + 40 : x + 60] = FREE
-            grid[y : y + 3, x + 40 : x + 60] = FREE if y else OCCUPIED
-            grid[np.hypot(rows - y - 30, columns - x - 20) < 8] = OCCUPIED
-            grid[y + 30 : y + 45, x + 50 : x + 64] = OCCUPIED
-    grid[-3:] = grid[:, -3:] = OCCUPIED
-    edge = ndimage.binary_dilation(grid == OCCUPIED) & (grid == FREE)
-    grid[edge & (ndimage.uniform_filter(rng.random(grid.shape), 7) > 0.55)] = OCCUPIED
-    grid[(rng.random(grid.shape) < noise / 40) & (grid == FREE)] = UNKNOWN
-    return Occupancy(grid, RESOLUTION)
 
 
 def test_a_ragged_office_takes_few_shapes_that_stand_where_the_map_says() -> None:
@@ -59,6 +52,16 @@ def test_a_ragged_office_takes_few_shapes_that_stand_where_the_map_says() -> Non
     seen = np.asarray(ndimage.binary_dilation(grid.cells == FREE, np.ones((3, 3))), dtype=np.bool_)
     off = shapely.distance(stands, shapely.points(places[seen & (grid.cells == OCCUPIED)]))
     assert np.max(off) < 2 * RESOLUTION
+
+
+def test_of_a_large_office_only_what_is_near_a_robot_is_simulated(tmp_path: Path) -> None:
+    began = time.process_time()
+    path = tmp_path / "office.xml"
+    path.write_text(to_mjcf(furnish(room_of_map(office(1000), "office"), starts=1)))
+    scene = build_scene(path, "nomad200")
+    assert time.process_time() - began < 10
+    assert scene.model.ngeom > 600
+    assert scene.simulated().ngeom < 100
 
 
 @given(MASKS)
