@@ -1,9 +1,15 @@
-"""Bring the tables of a document up to date with what `nomad-mj reproduce` has measured.
+"""Bring the tables of a document up to date with what was measured.
 
     python scripts/update_results.py renders docs/reproduction.md
+    python scripts/update_results.py renders docs/benchmark.md
 
+By `nomad-mj reproduce`, with its output in the folder that is named first:
 A table stands between the lines ``<!-- table EXPERIMENT CONFIG -->`` and ``<!-- end -->``, that of
 all verdicts between ``<!-- verdicts CONFIG ... -->`` and ``<!-- end -->``.
+
+By `nomad-mj benchmark`, with its output in that folder or in one FOLDER below: a table stands
+between ``<!-- benchmark FOLDER TITLE -->``, FOLDER ``.`` if there is none below, and
+``<!-- end -->``.
 """
 
 import re
@@ -13,6 +19,8 @@ from pathlib import Path
 _PLACE = re.compile(r"(<!-- table (\S+) (\S+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 _VERDICTS = re.compile(r"(<!-- verdicts ([^>]+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 _VERDICT = re.compile(r"^\*\*(.*)\*\*: ", re.MULTILINE)
+_BENCHMARK = re.compile(r"(<!-- benchmark (\S+) ([^>]+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+_TABLE = re.compile(r"^## ([^\n]+)\n\n(.*?)(?=^## |\Z)", re.DOTALL | re.MULTILINE)
 _PART = re.compile(r"^## (\S+): .*?(?=^## |\Z)", re.DOTALL | re.MULTILINE)
 
 
@@ -37,7 +45,18 @@ def update(text: str, folder: Path) -> str:
         found = _verdicts(folder, match[2].split())
         return f"{match[1]}{found or match[3]}{match[4]}"
 
-    return _VERDICTS.sub(judge, _PLACE.sub(replace, text))
+    def compare(match: re.Match[str]) -> str:
+        found = _compared(folder / match[2]).get(match[3])
+        return f"{match[1]}{found or match[4]}{match[5]}"
+
+    return _BENCHMARK.sub(compare, _VERDICTS.sub(judge, _PLACE.sub(replace, text)))
+
+
+def _compared(folder: Path) -> dict[str, str]:
+    """Return the tables of a benchmark by their titles."""
+    path = folder / "benchmark" / "tables.md"
+    text = path.read_text(encoding="utf-8") if path.exists() else ""
+    return {match[1]: match[2].rstrip() + "\n" for match in _TABLE.finditer(text)}
 
 
 def _verdicts(folder: Path, configs: list[str]) -> str:

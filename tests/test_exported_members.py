@@ -12,8 +12,11 @@ PUBLIC = {
         "OdometryNoise Outcome PathFinding PathFindingConfig RangeNoise SonarEffects Walkers "
         "list_robots list_rooms load load_batch"
     ),
+    "nomad_mj.batch": (
+        "BatchEnvironment BatchMotor BatchPathFinding BatchTimeStep Worlds load_batch world_seed"
+    ),
     "nomad_mj.perception": (
-        "GridSpec OBSERVATIONS Observation Percept SituationSpec attraction_force cell_centres "
+        "OBSERVATIONS GridSpec Observation Percept SituationSpec attraction_force cell_centres "
         "certainty_grid code_grid code_percept code_ranges code_signal coded_size perceive pool"
     ),
     "nomad_mj.motion": (
@@ -26,8 +29,9 @@ PUBLIC = {
         "add_obstacles place_goal read_moving"
     ),
     "nomad_mj.rooms": (
-        "Box Cylinder FREE OCCUPIED Occupancy Polygon Room UNKNOWN furnish maze_room merge_cells "
-        "random_room read_floor_image read_plan read_room read_ros_map room_of_map to_mjcf"
+        "Box Cylinder FREE OCCUPIED Occupancy Polygon Room UNKNOWN concave_room convex_room "
+        "furnish maze_room merge_cells random_room read_floor_image read_plan read_room "
+        "read_ros_map room_of_map to_mjcf wide_room"
     ),
     "nomad_mj.robots": (
         "PREFIX RayIndex RobotDescription Sheet adopt describe_robot find_sheet group_rays reach "
@@ -37,12 +41,10 @@ PUBLIC = {
         "BumperNoise Crosstalk FiringOrder Gyroscope InfraredEffects MotorConfig MotorEnvironment "
         "MotorTask NavigationPhysics OdometryNoise RangeNoise SonarEffects Start resolve_start"
     ),
-    "nomad_mj.batch": (
-        "BatchEnvironment BatchMotor BatchPathFinding BatchTimeStep Worlds load_batch world_seed"
-    ),
     "nomad_mj.envs": (
         "DEFAULT_ROBOT DEFAULT_ROOM TASKS PathFinding PathFindingConfig load percept_of"
     ),
+    "nomad_mj.gym": "MotorEnv NavigationEnv NavigationVectorEnv PathFindingEnv register",
 }
 ERRORS = (
     "CheckpointError ConfigError ModelError NomadError OutputError RenderError StartError "

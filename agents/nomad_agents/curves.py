@@ -1,5 +1,7 @@
 """Curves of a training for TensorBoard, by decisions; no TensorFlow, no PyTorch."""
 
+from collections.abc import Generator
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -40,18 +42,9 @@ class Curves:
 
     def __init__(self, folder: str | Path, *, resume: bool = False) -> None:
         summary = need("tensorboard.summary", "tensorboard", _WHAT)
-        path = Path(folder)
-        try:
-            path = path.expanduser()
-            path.mkdir(parents=True, exist_ok=True)
-            if not resume:
-                for file in path.glob(_FILES):
-                    file.unlink()
+        with curves_folder(Path(folder), resume=resume) as path:
             self._last = {tag: points[-1][0] for tag, points in read_curves(path).items()}
             self._writer: Any = summary.Writer(str(path))
-        except (OSError, RuntimeError) as error:  # RuntimeError: a home that there is not
-            reason = getattr(error, "strerror", None) or error
-            raise OutputError(f"cannot write curves to {str(path)!r}: {reason}") from None
         self._reward = 0.0
         self._before = Training()
 
@@ -106,6 +99,21 @@ class Curves:
     def _write(self, tag: str, value: float, step: int) -> None:
         if step > self._last.get(tag, -1):
             self._writer.add_scalar(tag, value, step)
+
+
+@contextmanager
+def curves_folder(folder: Path, *, resume: bool) -> Generator[Path, None, None]:
+    """Make the folder of a run's curves, for a writer to be opened in; see `Curves`."""
+    try:
+        folder = folder.expanduser()
+        folder.mkdir(parents=True, exist_ok=True)
+        if not resume:
+            for file in folder.glob(_FILES):
+                file.unlink()
+        yield folder
+    except (OSError, RuntimeError) as error:  # RuntimeError: a home that there is not
+        reason = getattr(error, "strerror", None) or error
+        raise OutputError(f"cannot write curves to {str(folder)!r}: {reason}") from None
 
 
 def read_curves(folder: Path) -> dict[str, list[tuple[int, float]]]:

@@ -6,7 +6,7 @@ from typing import Any
 from nomad_mj.errors import ConfigError
 
 
-def need(module: str, extra: str, what: str) -> Any:
+def need(module: str, extra: str, what: str, options: str = "") -> Any:
     """Return a module that only an extra of the package brings.
 
     Parameters
@@ -17,6 +17,8 @@ def need(module: str, extra: str, what: str) -> Any:
         As in ``pip install 'nomad-mj[extra]'``.
     what : str
         What needs it, for the message.
+    options : str
+        Of pip, beside the extra.
 
     Raises
     ------
@@ -26,6 +28,5 @@ def need(module: str, extra: str, what: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError as error:
-        raise ConfigError(
-            f"{what} needs {module.partition('.')[0]} ({error}): pip install 'nomad-mj[{extra}]'"
-        ) from None
+        install = f"pip install 'nomad-mj[{extra}]' {options}".rstrip()
+        raise ConfigError(f"{what} needs {module.partition('.')[0]} ({error}): {install}") from None

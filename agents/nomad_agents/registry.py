@@ -70,7 +70,7 @@ def find_agent(name_or_path: str, layout: SensorLayout, config: ReactivePlannerC
     except (OSError, RuntimeError):  # a name too long, a home that there is not
         exists = False
     if path.suffix != ".npz" and not exists:
-        raise UnknownNameError("agent", name_or_path, [*AGENTS, "CHECKPOINT.npz"])
+        raise UnknownNameError("agent", name_or_path, [*AGENTS, *LEARNERS, "CHECKPOINT.npz"])
     agent = load_agent(path)
     if not agent.layout.matches(layout):
         raise CheckpointError(

@@ -203,7 +203,9 @@ class Worlds:
 
     def seeds(self, seed: Any) -> "Sequence[Seed]":
         """Return a seed for each world, given one for all or one each."""
-        if seed is None or isinstance(seed, int | np.integer | np.random.SeedSequence):
+        if isinstance(seed, np.integer):
+            seed = int(seed)
+        if seed is None or isinstance(seed, int | np.random.SeedSequence):
             return [world_seed(seed, world) for world in range(self.count)]
         listed = isinstance(seed, Sequence | np.ndarray) and not isinstance(seed, str)
         if listed and len(seed) == self.count:

@@ -2,14 +2,13 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, Literal, Protocol
+from typing import Any, Protocol
 
 import dm_env
 import numpy as np
 
-from nomad_mj.errors import ConfigError
 from nomad_mj.gym.observations import Observer
+from nomad_mj.gym.reward import RewardOptions
 from nomad_mj.motion import Outcome
 from nomad_mj.scene import CONTROL_TIMESTEP
 from nomad_mj.tasks import MotorTask
@@ -29,37 +28,6 @@ class Body(Protocol):
     def bumpers(self) -> FloatArray:
         """Return 1 for each bumper touched since the last control step, else 0, (B,)."""
         ...
-
-
-@dataclass(frozen=True)
-class RewardOptions:
-    """What the reward is made of; their sum is paid.
-
-    Attributes
-    ----------
-    reward : "task" or "sparse"
-        That of the task below, or 1 at the goal and 0 elsewhere.
-    goal_bonus : float
-        Paid beside it when the goal is reached.
-    progress : float
-        Paid for each metre that the robot's true distance to the goal has become shorter.
-    """
-
-    reward: Literal["task", "sparse"] = "task"
-    goal_bonus: float = 0.0
-    progress: float = 0.0
-
-    def __post_init__(self) -> None:
-        if self.reward not in ("task", "sparse"):
-            raise ConfigError(f"reward {self.reward!r}: must be 'task' or 'sparse'")
-        for name in ("goal_bonus", "progress"):
-            if not np.isfinite(getattr(self, name)):
-                raise ConfigError(f"{name} {getattr(self, name)}: must be a finite number")
-
-    def total(self, task: float, reached: bool, nearer: float) -> float:
-        """Return the reward of a step that brought the robot `nearer` [m] to the goal."""
-        own = task if self.reward == "task" else float(reached)
-        return own + self.goal_bonus * reached + self.progress * nearer
 
 
 class Account:

@@ -8,13 +8,14 @@ import gymnasium
 import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
-from gymnasium.error import ResetNeeded
+from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import ConfigError
-from nomad_mj.gym.account import Account, Measures, RewardOptions
+from nomad_mj.gym.account import Account, Measures
 from nomad_mj.gym.camera import Camera
 from nomad_mj.gym.observations import Observer
+from nomad_mj.gym.reward import RewardOptions
 from nomad_mj.tasks import MotorEnvironment, MotorTask, NavigationPhysics
 
 Action = npt.NDArray[np.floating[Any]]
@@ -108,7 +109,11 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         ------
         StartError, UnknownNameError, ConfigError
             A start that there is not, another option.
+        ClosedEnvironmentError
+            The environment has been closed.
         """
+        if self._closed:
+            raise ClosedEnvironmentError("the environment has been closed: make another one")
         super().reset(seed=seed)
         options = options or {}
         for name in options:
@@ -141,7 +146,7 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         if action.shape != self.action_space.shape or not np.isfinite(action).all():
             (count,) = self.action_space.shape or (0,)
             raise ValueError(f"action {action}: must be {count} finite numbers in [-1, 1]")
-        step = self.environment.step(self._command(np.clip(action, -1.0, 1.0)))
+        step = self.environment.step(self._command(action.clip(-1.0, 1.0)))
         self.seen, self._over = step.observation, step.last()
         self._steps += 1
         if self.render_mode is not None:

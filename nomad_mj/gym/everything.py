@@ -36,7 +36,7 @@ class EverythingObserver:
 
     def __init__(self, scene: Scene, observation_spec: Mapping[str, specs.Array]) -> None:
         limits = _limits(scene)
-        self._angles = {"odometry": 2, "encoders": len(scene.robot.encoders.speeds)}
+        angles = {"odometry": 2, "encoders": len(scene.robot.encoders.speeds)}
         self.space = spaces.Dict(
             {
                 name: _space(spec, limits.get(name))
@@ -44,25 +44,39 @@ class EverythingObserver:
                 if 0 not in spec.shape
             }
         )
+        # Only what has been given limits here can be beyond them.
+        self._cut: list[tuple[str, FloatArray, FloatArray, int | None]] = []
+        self._arrays: list[tuple[str, tuple[int, ...]]] = []
+        self._numbers: list[str] = []
+        for name, space in self.space.items():
+            if not isinstance(space, spaces.Box):
+                self._numbers.append(name)
+                continue
+            self._arrays.append((name, space.shape))
+            if name in limits:
+                self._cut.append((name, space.low, space.high, angles.get(name)))
 
     def __call__(self, observation: Mapping[str, Any], first: bool) -> dict[str, Any]:
         """Return copies of the observations, within their limits."""
-        result: dict[str, Any] = {}
-        for name, space in self.space.items():
-            value = observation[name]
-            if isinstance(space, spaces.Box):
-                value = np.array(value, dtype=np.float64).reshape(space.shape)
-                angles = slice(self._angles.get(name, len(value)), None)
-                value[angles] = _wrapped(value[angles])
-                result[name] = np.clip(value, space.low, space.high)
-            else:
-                result[name] = np.int64(value)
+        result: dict[str, Any] = {
+            name: np.array(observation[name], dtype=np.float64).reshape(shape)
+            for name, shape in self._arrays
+        }
+        for name in self._numbers:
+            result[name] = np.int64(observation[name])
+        for name, low, high, angles in self._cut:
+            value = result[name]
+            if angles is not None:
+                _wrap(value[angles:])
+            np.maximum(np.minimum(value, high, out=value), low, out=value)
         return result
 
 
-def _wrapped(angles: FloatArray) -> FloatArray:
-    """Return the same directions in [-pi, pi]; those that lie there keep their bits."""
-    return np.where(np.abs(angles) <= math.pi, angles, wrap_angle(angles))
+def _wrap(angles: FloatArray) -> None:
+    """Make angles the same directions in [-pi, pi]; those that lie there keep their bits."""
+    for number, angle in enumerate(angles.tolist()):
+        if abs(angle) > math.pi:
+            angles[number] = wrap_angle(angle)
 
 
 def _limits(scene: Scene) -> dict[str, tuple[FloatArray, FloatArray]]:

@@ -8,12 +8,13 @@ from typing import Any, Literal
 import numpy as np
 
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, load
-from nomad_mj.gym.account import RewardOptions, motor_measures
+from nomad_mj.gym.account import motor_measures
 from nomad_mj.gym.base import NavigationEnv, picture_size, refuse_observation
 from nomad_mj.gym.camera import Camera
 from nomad_mj.gym.everything import EverythingObserver
 from nomad_mj.gym.observations import DrivenRangesObserver, Observer
 from nomad_mj.gym.options import task_options
+from nomad_mj.gym.reward import RewardOptions
 from nomad_mj.types import FloatArray
 
 
@@ -88,4 +89,4 @@ class MotorEnv(NavigationEnv):
 
 def motor_commands(actions: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     """Return the commands (..., M) of actions in [-1, 1], given the motors' limits; 0 is 0."""
-    return np.clip(actions * np.maximum(np.abs(low), np.abs(high)), low, high)
+    return (actions * np.maximum(np.abs(low), np.abs(high))).clip(low, high)

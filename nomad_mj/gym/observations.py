@@ -74,7 +74,7 @@ class DrivenRangesObserver:
         self._ranges = RangesObserver(scene)
         self._task = task
         limits = scene.robot.limits
-        self._fastest = np.array([limits.translate, limits.translate, limits.turn])
+        self._fastest = (limits.translate, limits.translate, limits.turn)
         self._before = math.nan
         bumpers = len(scene.robot.bumpers)
         low = np.concatenate([self._ranges.space.low, np.zeros(bumpers), -np.ones(5)])
@@ -86,8 +86,12 @@ class DrivenRangesObserver:
         travel = self._task.travel
         turned = 0.0 if first else travel.heading - self._before
         self._before = travel.heading
-        ways = np.array([travel.forward, travel.sideways, turned])
-        speeds = np.clip(ways / CONTROL_TIMESTEP / self._fastest, -1.0, 1.0)
-        facing = [math.cos(heading - sensors), math.sin(heading - sensors)]
-        parts = (self._ranges(observation, first), observation["bumpers"], facing, speeds)
-        return np.concatenate(parts).astype(np.float32)
+        speeds = (
+            max(-1.0, min(way / (CONTROL_TIMESTEP * fastest), 1.0))
+            for way, fastest in zip(
+                (travel.forward, travel.sideways, turned), self._fastest, strict=True
+            )
+        )
+        own = (math.cos(heading - sensors), math.sin(heading - sensors), *speeds)
+        parts = (self._ranges(observation, first), observation["bumpers"], own)
+        return np.concatenate(parts, dtype=np.float32, casting="same_kind")

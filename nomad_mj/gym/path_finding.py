@@ -5,12 +5,13 @@ from pathlib import Path
 from typing import Any, Literal
 
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, load
-from nomad_mj.gym.account import RewardOptions, move_measures
+from nomad_mj.gym.account import move_measures
 from nomad_mj.gym.base import NavigationEnv, picture_size, refuse_observation
 from nomad_mj.gym.camera import Camera
 from nomad_mj.gym.everything import EverythingObserver
 from nomad_mj.gym.observations import Observer, RangesObserver, SituationObserver
 from nomad_mj.gym.options import structure, task_options
+from nomad_mj.gym.reward import RewardOptions
 from nomad_mj.perception import SituationSpec
 from nomad_mj.types import FloatArray
 

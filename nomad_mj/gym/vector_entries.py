@@ -12,7 +12,7 @@ from nomad_mj.batch import BatchMotor, load_batch
 from nomad_mj.batch.load import Goals, Rooms
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
 from nomad_mj.errors import ConfigError
-from nomad_mj.gym.account import Account, RewardOptions, motor_measures, move_measures
+from nomad_mj.gym.account import Account, motor_measures, move_measures
 from nomad_mj.gym.base import refuse_observation
 from nomad_mj.gym.everything import EverythingObserver
 from nomad_mj.gym.motor import motor_commands
@@ -23,6 +23,7 @@ from nomad_mj.gym.observations import (
     SituationObserver,
 )
 from nomad_mj.gym.options import structure, task_options
+from nomad_mj.gym.reward import RewardOptions
 from nomad_mj.gym.vector import NavigationVectorEnv
 from nomad_mj.perception import SituationSpec
 from nomad_mj.types import FloatArray

@@ -5,7 +5,7 @@ from nomad_mj.rooms.mjcf import to_mjcf
 from nomad_mj.rooms.occupancy import FREE, OCCUPIED, UNKNOWN, Occupancy, room_of_map
 from nomad_mj.rooms.places import furnish
 from nomad_mj.rooms.plan_file import read_plan
-from nomad_mj.rooms.random_room import random_room
+from nomad_mj.rooms.random_room import concave_room, convex_room, random_room, wide_room
 from nomad_mj.rooms.read import read_room
 from nomad_mj.rooms.rectangles import merge_cells
 from nomad_mj.rooms.room import Box, Cylinder, Polygon, Room
@@ -20,6 +20,8 @@ __all__ = [
     "Occupancy",
     "Polygon",
     "Room",
+    "concave_room",
+    "convex_room",
     "furnish",
     "maze_room",
     "merge_cells",
@@ -30,4 +32,5 @@ __all__ = [
     "read_ros_map",
     "room_of_map",
     "to_mjcf",
+    "wide_room",
 ]

@@ -1,22 +1,15 @@
 """Rooms made at random, the same for the same seed, which a robot can always solve."""
 
 import math
+from functools import partial
 
 import numpy as np
-import shapely
-from shapely import affinity
-from shapely.geometry.base import BaseGeometry
 
-from nomad_mj.arenas.halton import CLEARANCE, RADIUS
-from nomad_mj.errors import ConfigError
-from nomad_mj.rooms.plan_file import walls_along
 from nomad_mj.rooms.room import Box, Cylinder, Room, Shape
+from nomad_mj.rooms.scatter import SIDE, check_seed, scattered
 
-SIDE = 10.0
-"""Length and width of the room [m]."""
-
-_TRIES = 60  # an obstacle, before it is left out
-_GOAL_SPACE = 0.6  # [m] around the goal's centre
+_CONVEX, _WIDE, _CONCAVE = range(3)  # kinds of streams; the plain room has the seed's own
+_THICK = 0.3  # [m] of the sides of a U
 
 
 def random_room(seed: int, difficulty: float = 0.5) -> Room:
@@ -37,45 +30,104 @@ def random_room(seed: int, difficulty: float = 0.5) -> Room:
     ConfigError
         A seed or difficulty outside these.
     """
-    if seed < 0:
-        raise ConfigError(f"seed {seed}: must be 0 or more")
-    if not 0 <= difficulty <= 1:
-        raise ConfigError(f"difficulty {difficulty:g}: must be 0 to 1")
+    check_seed(seed, difficulty)
+
     rng = np.random.default_rng(np.random.SeedSequence(seed))
-    outline = ((0.0, 0.0), (SIDE, 0.0), (SIDE, SIDE), (0.0, SIDE))
-    margin = RADIUS + CLEARANCE
-    floor = shapely.box(margin, margin, SIDE - margin, SIDE - margin)
-    x, y = (round(float(value), 2) for value in rng.uniform(1.0, SIDE - 1.0, 2))
-    goal = shapely.Point(x, y).buffer(_GOAL_SPACE)
-    obstacles: list[Shape] = []
-    for _ in range(round(4 + 16 * difficulty)):
-        for _ in range(_TRIES):
-            shape = _draw(rng, difficulty)
-            footprint = _footprint(shape)
-            left = floor.difference(footprint.buffer(margin))
-            if left.geom_type == "Polygon" and not footprint.intersects(goal):
-                obstacles.append(shape)
-                floor = left
-                break
-    bounds = (0.0, 0.0, SIDE, SIDE)
-    return Room(f"random_{seed}", walls_along(outline), tuple(obstacles), bounds, (x, y))
+    return scattered(f"random_{seed}", rng, partial(_draw, difficulty), round(4 + 16 * difficulty))
 
 
-def _draw(rng: np.random.Generator, difficulty: float) -> Shape:
+def convex_room(seed: int, difficulty: float = 0.5) -> Room:
+    """Return a room like `random_room`'s whose obstacles keep apart, so that each is convex.
+
+    The robot can go all around each of them; there may be fewer than in a `random_room`, which
+    lets them overlap.
+
+    Parameters
+    ----------
+    seed : int
+        Of the room, 0 or more.
+    difficulty : float
+        From 0, four small obstacles, to 1, up to twenty of up to 2.4 m.
+    """
+    check_seed(seed, difficulty)
+    rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(_CONVEX,)))
+    count = round(4 + 16 * difficulty)
+    return scattered(f"convex_{seed}", rng, partial(_draw, difficulty), count, apart=True)
+
+
+def wide_room(seed: int, difficulty: float = 0.5) -> Room:
+    """Return a room with walls that stand free, wider than a robot that sees 2 m can look past.
+
+    Where the robot stands before the middle of one it sees no end of it, on either side. All else
+    is as of `random_room`.
+
+    Parameters
+    ----------
+    seed : int
+        Of the room, 0 or more.
+    difficulty : float
+        From 0, two walls of 3 to 4 m, to 1, six of 3 to 6 m.
+    """
+    check_seed(seed, difficulty)
+
+    def draw(rng: np.random.Generator) -> tuple[Shape, ...]:
+        x, y = _place(rng)
+        length = round(float(rng.uniform(3.0, 4.0 + 2.0 * difficulty)), 2)
+        return (Box(x, y, length, _THICK, math.radians(int(rng.integers(0, 180)))),)
+
+    rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(_WIDE,)))
+    return scattered(f"wide_{seed}", rng, draw, round(2 + 4 * difficulty), apart=True)
+
+
+def concave_room(seed: int, difficulty: float = 0.5) -> Room:
+    """Return a room with obstacles in the shape of a U, open to any side.
+
+    A robot in one that goes straight for a goal behind it has to turn back. All else is as of
+    `random_room`.
+
+    Parameters
+    ----------
+    seed : int
+        Of the room, 0 or more.
+    difficulty : float
+        From 0, two with sides of 0.8 to 1 m, to 1, six with sides of 0.8 to 2.2 m.
+    """
+    check_seed(seed, difficulty)
+
+    def draw(rng: np.random.Generator) -> tuple[Shape, ...]:
+        x, y = _place(rng)
+        inside = round(float(rng.uniform(1.2, 2.4)), 2)  # wide enough to go in and turn round
+        depth = round(float(rng.uniform(0.8, 1.0 + 1.2 * difficulty)), 2)
+        return _u_shape(x, y, inside, depth, math.radians(int(rng.integers(0, 360))))
+
+    rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(_CONCAVE,)))
+    return scattered(f"concave_{seed}", rng, draw, round(2 + 4 * difficulty), apart=True)
+
+
+def _draw(difficulty: float, rng: np.random.Generator) -> tuple[Shape, ...]:
     """Draw an obstacle; lengths and places are whole centimetres, angles whole degrees."""
-    x, y = (round(float(value), 2) for value in rng.uniform(0.0, SIDE, 2))
+    x, y = _place(rng)
     half = rng.uniform([0.2, 0.15], [0.5 + 0.7 * difficulty, 0.5])
     length, width = (round(2 * float(value), 2) for value in half)
     degrees, kind = int(rng.integers(0, 180)), int(rng.integers(0, 3))
     if kind == 0:
-        return Cylinder(x, y, round(width / 2, 2))
-    return Box(x, y, length, width, math.radians(degrees))
+        return (Cylinder(x, y, round(width / 2, 2)),)
+    return (Box(x, y, length, width, math.radians(degrees)),)
 
 
-def _footprint(shape: Shape) -> BaseGeometry:
-    if isinstance(shape, Cylinder):
-        return shapely.Point(shape.x, shape.y).buffer(shape.radius)
-    assert isinstance(shape, Box)
-    box = shapely.box(-shape.length / 2, -shape.width / 2, shape.length / 2, shape.width / 2)
-    turned = affinity.rotate(box, shape.angle, origin=(0, 0), use_radians=True)
-    return affinity.translate(turned, shape.x, shape.y)
+def _place(rng: np.random.Generator) -> tuple[float, float]:
+    x, y = (round(float(value), 2) for value in rng.uniform(0.0, SIDE, 2))
+    return x, y
+
+
+def _u_shape(x: float, y: float, inside: float, depth: float, angle: float) -> tuple[Box, ...]:
+    """Return a back, whose middle is at (x, y), and two sides of `depth` before it [m]."""
+    across = (inside + _THICK) / 2
+    ahead = (depth + _THICK) / 2
+    parts = [(0.0, 0.0, _THICK, inside + 2 * _THICK)]
+    parts += [(ahead, side * across, depth, _THICK) for side in (1, -1)]
+    cos, sin = math.cos(angle), math.sin(angle)
+    return tuple(
+        Box(x + cos * u - sin * v, y + sin * u + cos * v, length, width, angle)
+        for u, v, length, width in parts
+    )

@@ -25,7 +25,8 @@ def test_a_checkpoint_for_other_sensors_is_refused(layout: SensorLayout) -> None
 
 @pytest.mark.parametrize("name", ["nobody", "no/such/file", "a" * 300, "~nobody-there/x"])
 def test_what_is_no_agent_and_no_file_lists_what_there_is(layout: SensorLayout, name: str) -> None:
-    with pytest.raises(UnknownNameError, match=r"\.npz, dwa, planner, potential, random, .* vfh$"):
+    known = r"\.npz, dwa, planner, potential, ppo, .*, straight, td3, vfh$"
+    with pytest.raises(UnknownNameError, match=known):
         find_agent(name, layout, TUNED)
 
 

@@ -121,7 +121,7 @@ print(driven, trained)
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert ran.stdout.splitlines()[-1:] == ["0 2"], ran.stderr
     assert ran.stderr == (
-        "nomad-mj: deep learners need torch and stable_baselines3: pip install 'nomad-mj[deep]' "
-        "--extra-index-url https://download.pytorch.org/whl/cpu (PyTorch for the CPU is enough)\n"
+        "nomad-mj: a deep learner needs torch (No module named 'torch'): "
+        "pip install 'nomad-mj[deep]' --extra-index-url https://download.pytorch.org/whl/cpu\n"
     )
     assert list(tmp_path.iterdir()) == []

@@ -107,7 +107,7 @@ def test_what_is_raised_between_two_results_ends_the_processes(tmp_path: Path) -
 
 
 def test_a_process_that_is_killed_is_told_and_the_others_are_kept(tmp_path: Path) -> None:
-    with pytest.raises(WorkerError, match="a process was killed"):
+    with pytest.raises(WorkerError, match="1 of the runs killed their process 3 times"):
         do_runs(runs(COUNT), die_at_two, tmp_path, 1, lambda _: None)
     assert stored_result(runs(1)[0], tmp_path) is not None
     assert len(do_runs(runs(COUNT), draw, tmp_path, 1, lambda _: None)) == COUNT

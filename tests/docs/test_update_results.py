@@ -59,3 +59,19 @@ def test_tables_are_put_in_their_places_and_the_rest_is_kept(tmp_path: Path) -> 
         verdicts = "|  | faithful | tuned |\n| --- | --- | --- |\n| fig6 | holds |  |\n"
         verdicts += "| fig7 | does not hold |  |\n"
         assert verdicts in text
+
+
+def test_tables_of_a_benchmark_too(tmp_path: Path) -> None:
+    for folder, number in ((".", 1), ("deep", 2)):
+        (tmp_path / folder / "benchmark").mkdir(parents=True)
+        text = f"`nomad-mj`\n\n## SPL, all\n\n| {number} |\n\n## wide: driving\n\n| 3 |\n"
+        (tmp_path / folder / "benchmark" / "tables.md").write_text(text)
+    page = tmp_path / "page.md"
+    marks = ("<!-- benchmark . SPL, all -->", "<!-- benchmark deep SPL, all -->")
+    kept = "<!-- benchmark . maze: driving -->\nkept\n<!-- end -->\n"
+    page.write_text(f"{marks[0]}\nstale\n<!-- end -->\n{marks[1]}\n<!-- end -->\n{kept}")
+    for _ in range(2):
+        subprocess.run([sys.executable, str(SCRIPT), str(tmp_path), str(page)], check=True)
+        assert page.read_text() == (
+            f"{marks[0]}\n| 1 |\n<!-- end -->\n{marks[1]}\n| 2 |\n<!-- end -->\n{kept}"
+        )

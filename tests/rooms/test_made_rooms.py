@@ -5,6 +5,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+import shapely
 
 import nomad_mj
 from nomad_mj.arenas.halton import RADIUS
@@ -13,11 +14,14 @@ from nomad_mj.rooms import (
     Box,
     Cylinder,
     Polygon,
+    concave_room,
+    convex_room,
     furnish,
     maze_room,
     random_room,
     read_room,
     to_mjcf,
+    wide_room,
 )
 from nomad_mj.rooms.places import floor_plan
 
@@ -29,7 +33,13 @@ obstacles:
   - cylinder: [1, 3, 0.3]
   - polygon: [[4.5, 3], [5, 3], [4.7, 3.5]]
 """
-MAKERS = {"random": random_room, "maze": maze_room}
+MAKERS = {
+    "random": random_room,
+    "convex": convex_room,
+    "wide": wide_room,
+    "concave": concave_room,
+    "maze": maze_room,
+}
 
 
 @pytest.mark.parametrize("kind", MAKERS)
@@ -44,6 +54,28 @@ def test_rooms_made_up_can_be_solved_from_everywhere(kind: str, difficulty: floa
         assert plan.reaches(places, room.goal, RADIUS).all()
         assert (plan.clearance(places, RADIUS) > 0.1).all()
     assert to_mjcf(MAKERS[kind](1, difficulty)) != to_mjcf(MAKERS[kind](2, difficulty))
+
+
+@pytest.mark.parametrize("kind", ["convex", "wide", "concave"])
+@pytest.mark.parametrize("difficulty", [0.0, 0.5, 1.0])
+def test_the_robot_can_go_around_what_keeps_apart(kind: str, difficulty: float) -> None:
+    parts = 3 if kind == "concave" else 1  # of an obstacle
+    for seed in range(5):
+        room = MAKERS[kind](seed, difficulty)
+        shapes = floor_plan(room).footprints[len(room.walls) :]
+        things = [shapely.union_all(shapes[n : n + parts]) for n in range(0, len(shapes), parts)]
+        assert len(things) >= 2
+        for number, thing in enumerate(things):
+            assert shapely.box(0, 0, 10, 10).exterior.distance(thing) > 2 * RADIUS
+            others = shapely.union_all([*things[:number], *things[number + 1 :]])
+            assert thing.distance(others) > 2 * RADIUS
+            assert (kind == "concave") == (thing.convex_hull.area > 1.05 * thing.area)
+
+
+def test_walls_of_a_wide_room_are_wider_than_what_the_robot_sees() -> None:
+    for seed in range(10):
+        boxes = wide_room(seed).obstacles
+        assert boxes and all(isinstance(box, Box) and box.length >= 3 for box in boxes)
 
 
 def test_difficulty_adds_obstacles() -> None:

@@ -10,7 +10,8 @@ from nomad_agents.cli.common import console, interruptible, print_json
 from nomad_agents.cli.evaluate import choose_starts
 from nomad_agents.cli.progress import trial_progress
 from nomad_agents.cli.task_options import TaskOptions
-from nomad_agents.dataset import collect, datasets_root, require_new, task_of, write_dataset
+from nomad_agents.collecting import collect, task_of
+from nomad_agents.dataset import datasets_root, require_new, write_dataset
 from nomad_agents.extras import need
 from nomad_agents.registry import find_agent, find_config
 from nomad_mj.assets import find_robot, find_room

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from nomad_agents.cli.bench import Bench
+from nomad_agents.cli.benchmark import Benchmark
 from nomad_agents.cli.check import Check
 from nomad_agents.cli.common import fail
 from nomad_agents.cli.demo import Demo
@@ -16,6 +17,7 @@ from nomad_agents.cli.parsing import parse
 from nomad_agents.cli.record import Record
 from nomad_agents.cli.reproduce import Reproduce
 from nomad_agents.cli.room import MakeRoom
+from nomad_agents.cli.sweep import Sweep
 from nomad_agents.cli.train import Train
 from nomad_agents.cli.view import View
 from nomad_mj.errors import NomadError
@@ -27,6 +29,8 @@ COMMANDS: dict[str, type[Any]] = {
     "export": Export,
     "view": View,
     "reproduce": Reproduce,
+    "sweep": Sweep,
+    "benchmark": Benchmark,
     "room": MakeRoom,
     "check": Check,
     "list": List,

@@ -11,9 +11,25 @@ from nomad_agents.checkpoint import write_atomically
 from nomad_agents.cli.common import console, print_json
 from nomad_agents.cli.parsing import parse_place
 from nomad_mj.errors import ConfigError
-from nomad_mj.rooms import Room, furnish, maze_room, random_room, read_room, to_mjcf
+from nomad_mj.rooms import (
+    Room,
+    concave_room,
+    convex_room,
+    furnish,
+    maze_room,
+    random_room,
+    read_room,
+    to_mjcf,
+    wide_room,
+)
 
-_MADE = {"random": random_room, "maze": maze_room}
+_MADE = {
+    "random": random_room,
+    "convex": convex_room,
+    "wide": wide_room,
+    "concave": concave_room,
+    "maze": maze_room,
+}
 
 
 @dataclass(frozen=True)
@@ -21,7 +37,7 @@ class MakeRoom:
     """Make a room's MJCF file of a map, an image or a plan, or make up a room or a maze."""
 
     source: tyro.conf.Positional[str]
-    """Map or plan, .yaml, or image, .pgm or .png; or one of the words random and maze."""
+    """Map or plan, .yaml, or image, .pgm or .png; or a word: random convex wide concave maze."""
     out: Annotated[str, tyro.conf.arg(aliases=["-o"])] = "room.xml"
     """The file to write, .xml."""
     resolution: float | None = None

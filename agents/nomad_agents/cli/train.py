@@ -16,6 +16,7 @@ from nomad_agents.curves import Curves
 from nomad_agents.deep import LEARNERS
 from nomad_agents.deep.environment import make_env
 from nomad_agents.deep.extra import require_extra
+from nomad_agents.deep.training import require_budget
 from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner
 from nomad_agents.registry import find_agent, find_config
 from nomad_agents.training import Training, TrainingConfig, train, training_report
@@ -41,7 +42,7 @@ class Train(TaskOptions):
     """Parameters: faithful (the paper's) or tuned (better ones found since)."""
     observation: str = "situation"
     """What a deep learner is shown: situation (26 numbers) or ranges (all range readings)."""
-    decisions: int = 20_000
+    decisions: int = 10_000
     """A deep learner learns from so many decisions."""
     tensorboard: str = ""
     """Folder for the curves of the training, for TensorBoard."""
@@ -67,18 +68,14 @@ class Train(TaskOptions):
         """Raise ConfigError if one of the options that the agent does not have is given."""
         for each in fields(self):
             if each.name in names and getattr(self, each.name) != each.default:
-                raise ConfigError(
-                    f"--{each.name.replace('_', '-')} is no option of agent {self.agent!r}"
-                    + (
-                        ": an interrupted training of it starts anew"
-                        if each.name == "resume"
-                        else ""
-                    )
-                )
+                option = f"--{each.name.replace('_', '-')}"
+                why = ": its training can only start anew" if each.name == "resume" else ""
+                raise ConfigError(f"{option} is no option of agent {self.agent!r}{why}")
 
     def _train_deep(self) -> int:
         screen, settings = console(json_wanted=self.json), LEARNERS[self.agent]()
-        require_extra(*(["tensorboard"] if self.tensorboard else []))
+        require_budget(self.decisions, 0, self.seed)
+        require_extra(curves=bool(self.tensorboard))
         with self.path_finding() as test, interruptible():
             name = f"{test.scene.arena.name}_{self.agent}_{self.observation}_{self.seed}"
             path = output_file(self.out, name, ".npz")
@@ -94,7 +91,7 @@ class Train(TaskOptions):
                     path,
                     screen,
                     self.conditions(),
-                    Path(self.tensorboard) if self.tensorboard else None,
+                    Path(self.tensorboard) / name if self.tensorboard else None,
                 )
         told = f"solved {report['solved']} of {report['starts']} starts"
         screen.print(f"{told} after {report['decisions']} decisions: {path}", soft_wrap=True)
@@ -132,7 +129,10 @@ class Train(TaskOptions):
         """Return the agent to train: a new one, or what a checkpoint has learnt elsewhere."""
         agent = find_agent(self.agent, env.scene.robot.layout, find_config(self.config))
         if not isinstance(agent, ReactivePlanner):
-            raise ConfigError(f"agent {self.agent!r} does not learn; try {ReactivePlanner.name!r}")
+            raise ConfigError(
+                f"agent {self.agent!r} does not learn; try {ReactivePlanner.name!r}, or anew "
+                f"{' or '.join(LEARNERS)}"
+            )
         if agent.config != find_config(self.config):
             raise ConfigError(
                 f"checkpoint {self.agent!r} has other parameters than --config {self.config}; "

@@ -1,18 +1,16 @@
 """Whether the optional packages of the deep learners are there."""
 
-from importlib.util import find_spec
+from nomad_agents.extras import need
 
-from nomad_mj.errors import ConfigError
-
-NEEDED = ("torch", "stable_baselines3")
-INSTALL = (
-    "pip install 'nomad-mj[deep]' --extra-index-url https://download.pytorch.org/whl/cpu "
-    "(PyTorch for the CPU is enough)"
-)
+CPU_BUILD = "--extra-index-url https://download.pytorch.org/whl/cpu"
 
 
-def require_extra(*more: str) -> None:
-    """Raise ConfigError, with what to do, if PyTorch, Stable-Baselines3 or `more` are missing."""
-    missing = [name for name in (*NEEDED, *more) if find_spec(name) is None]
-    if missing:
-        raise ConfigError(f"deep learners need {' and '.join(missing)}: {INSTALL}")
+def require_extra(*, curves: bool) -> None:
+    """Raise ConfigError, with what to install, if PyTorch or Stable-Baselines3 is missing.
+
+    So if TensorBoard is, for a training that writes `curves`.
+    """
+    for module in ("torch", "stable_baselines3"):
+        need(module, "deep", "a deep learner", CPU_BUILD)
+    if curves:
+        need("tensorboard.summary", "tensorboard", "TensorBoard's curves")

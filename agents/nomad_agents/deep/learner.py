@@ -1,5 +1,6 @@
 """Stable-Baselines3's learners behind our settings, and their actors as our policies."""
 
+import math
 import random
 from collections.abc import Callable, Generator
 from contextlib import ExitStack, contextmanager
@@ -16,6 +17,7 @@ from stable_baselines3.common.noise import NormalActionNoise
 from torch import nn
 from typing_extensions import Self
 
+from nomad_agents.curves import curves_folder
 from nomad_agents.deep.agent import DeepAgent
 from nomad_agents.deep.environment import task_of
 from nomad_agents.deep.policy import Policy
@@ -44,18 +46,20 @@ class Learner:
         self._env = env
         self._seed = seed
         self._log_folder = log_folder
-        self._stack = ExitStack()
 
     def __enter__(self) -> Self:
         task_of(self._env)
-        self._stack.enter_context(_own_chance())
-        self._stack.enter_context(_one_thread())
-        self.model = make_model(self._settings, self._env, self._seed)
-        logger = Logger(None, [])
-        if self._log_folder is not None:
-            logger = configure(str(self._log_folder), ["tensorboard"])
-        self.model.set_logger(logger)
-        self._stack.callback(logger.close)
+        with ExitStack() as stack:
+            stack.enter_context(_own_chance())
+            stack.enter_context(_one_thread())
+            self.model = make_model(self._settings, self._env, self._seed)
+            logger = Logger(None, [])
+            if self._log_folder is not None:
+                with curves_folder(self._log_folder, resume=False) as folder:
+                    logger = configure(str(folder), ["tensorboard"])
+            self.model.set_logger(logger)
+            stack.callback(logger.close)
+            self._stack = stack.pop_all()
         return self
 
     def __exit__(self, *error: object) -> None:
@@ -65,7 +69,8 @@ class Learner:
         """Return the agent as it is now; it does not change when learning goes on."""
         task = task_of(self._env)
         layout, policy = task.task.scene.robot.layout, policy_of(self.model)
-        return DeepAgent(layout, task.situation, task.observation, policy, self._settings)
+        observation = "ranges" if task.observation == "ranges" else "situation"
+        return DeepAgent(layout, task.situation, observation, policy, self._settings)
 
     def learn(
         self,
@@ -124,12 +129,12 @@ def make_model(
         "policy_kwargs": {"net_arch": [*settings.hidden]},
     }
     if isinstance(settings, PpoSettings):
+        shared["policy_kwargs"]["log_std_init"] = math.log(settings.spread)
         return PPO(
             **shared,
             n_steps=settings.rollout,
             n_epochs=settings.epochs,
             gae_lambda=settings.gae_lambda,
-            ent_coef=settings.entropy,
         )
     shared |= {
         "buffer_size": settings.buffer_size,

@@ -71,7 +71,7 @@ class Td3Settings(_OffPolicy):
     """
 
     algorithm: ClassVar[Algorithm] = "td3"
-    exploration: float = 0.1
+    exploration: float = 0.3
 
 
 @dataclass(frozen=True)
@@ -83,24 +83,24 @@ class PpoSettings:
     hidden, gamma, learning_rate, batch_size, goal_bonus, episode_decisions
         As of SAC and TD3.
     rollout : int
-        Decisions between two rounds of updates.
+        Decisions between two rounds of updates; what is left over at the end is not learnt from.
     epochs : int
         Passes over a rollout in a round of updates.
     gae_lambda : float
         Of generalised advantage estimation.
-    entropy : float
-        Weight of the entropy bonus.
+    spread : float
+        Standard deviation of actions to begin with.
     """
 
     algorithm: ClassVar[Algorithm] = "ppo"
     hidden: tuple[int, ...] = (128, 128)
-    gamma: float = 0.97
-    learning_rate: float = 3e-4
+    gamma: float = 0.95
+    learning_rate: float = 1e-3
     batch_size: int = 64
     rollout: int = 512
     epochs: int = 10
     gae_lambda: float = 0.95
-    entropy: float = 0.0
+    spread: float = 0.5
     goal_bonus: float = 2.0
     episode_decisions: int = 50
 

@@ -82,18 +82,18 @@ def train_deep(
     after_decision : callable, optional
         Called with it; what it raises ends the training.
     log_folder : Path, optional
-        Where Stable-Baselines3 writes curves for TensorBoard.
+        Where Stable-Baselines3 writes curves for TensorBoard; those of a training before are
+        deleted.
 
     Raises
     ------
     ConfigError
         PyTorch or Stable-Baselines3 is not installed; an option that makes no sense.
+    OutputError
+        `log_folder` cannot be written.
     """
-    if decisions < 1 or every < 0 or seed < 0:
-        raise ConfigError(
-            f"decisions {decisions}, every {every}, seed {seed}: must be at least 1, 0 and 0"
-        )
-    require_extra(*(["tensorboard"] if log_folder is not None else []))
+    require_budget(decisions, every, seed)
+    require_extra(curves=log_folder is not None)
     from nomad_agents.deep.learner import Learner  # takes seconds: it imports PyTorch
 
     training = DeepTraining() if training is None else training
@@ -105,3 +105,10 @@ def train_deep(
     with Learner(settings, env, seed, log_folder) as learner:
         learner.learn(decisions, every or decisions, training, after_decision, report)
         return learner.agent()
+
+
+def require_budget(decisions: int, every: int, seed: int) -> None:
+    """Raise ConfigError unless `train_deep` takes these numbers."""
+    for name, given, least in (("decisions", decisions, 1), ("every", every, 0), ("seed", seed, 0)):
+        if given < least:
+            raise ConfigError(f"{name} {given}: must be {least} or more")

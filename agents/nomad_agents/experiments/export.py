@@ -7,13 +7,16 @@ from dataclasses import asdict, fields
 from importlib.metadata import version
 from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.parquet as pq
+
 from nomad_agents.checkpoint import write_atomically
 from nomad_agents.experiments.runs import PACKAGES, Result, Row, Run
 
 _RUN = tuple(field.name for field in fields(Run))
 
 
-def export(results: Sequence[Result], folder: Path) -> tuple[Path, Path]:
+def export(results: Sequence[Result], folder: Path, *, parquet: bool = False) -> tuple[Path, Path]:
     """Write ``runs.csv``, a row a run, and ``episodes.csv``, a row an episode.
 
     The rows' order depends on what the runs are, not on who came first. Numbers read back to the
@@ -25,11 +28,13 @@ def export(results: Sequence[Result], folder: Path) -> tuple[Path, Path]:
         Of any experiments.
     folder : Path
         Where to write them.
+    parquet : bool
+        Whether to write the same as ``runs.parquet`` and ``episodes.parquet`` too.
 
     Returns
     -------
     tuple of Path
-        Both files.
+        Both CSV files.
 
     Raises
     ------
@@ -50,7 +55,25 @@ def export(results: Sequence[Result], folder: Path) -> tuple[Path, Path]:
     paths = folder / "runs.csv", folder / "episodes.csv"
     _write(runs, (*_RUN, *PACKAGES), paths[0])
     _write(episodes, (*_RUN, "episode"), paths[1])
+    if parquet:
+        for table, path in zip((runs, episodes), paths, strict=True):
+            write_parquet(table, path.with_suffix(".parquet"))
     return paths
+
+
+def write_parquet(rows: Sequence[Row], path: Path) -> None:
+    """Write rows as Parquet, with all columns that any of them has.
+
+    Raises
+    ------
+    OutputError
+        The file cannot be written.
+    """
+    columns = dict.fromkeys(name for row in rows for name in row)
+    table = pa.table({name: pa.array([row.get(name) for row in rows]) for name in columns})
+    buffer = io.BytesIO()
+    pq.write_table(table, buffer)
+    write_atomically(path, lambda file: file.write(buffer.getvalue()))
 
 
 def _joined(identity: Row, numbers: Row) -> Row:

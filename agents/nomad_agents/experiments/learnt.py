@@ -1,5 +1,6 @@
 """Agents that have learnt, with the curve of their learning, kept for the experiments after it."""
 
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -20,9 +21,14 @@ _PER_PASS = ("decisions", "reactions", "plannings", "virtual_collisions", "bumpe
 
 
 def learn(
-    env: PathFinding, agent: ReactivePlanner, config: TrainingConfig
+    env: PathFinding,
+    agent: ReactivePlanner,
+    config: TrainingConfig,
+    watch: Callable[[Training], None] | None = None,
 ) -> tuple[Row, list[Row]]:
     """Train an agent; return what it took and one entry of its learning curve a pass.
+
+    `watch` is called after each episode.
 
     Returns
     -------
@@ -43,6 +49,8 @@ def learn(
             entry["plannings"] -= before
             entry |= {"pass": len(curve) + 1, "solved": training.solved, "starts": starts}
             curve.append(entry)
+        if watch is not None:
+            watch(training)
 
     training = train(env, agent, config, Training(), after_episode)
     report = training_report(env, agent, training) | {"starts": starts}

@@ -5,18 +5,13 @@ A run that is on file is not done again: what was killed goes on where it was, t
 
 import hashlib
 import json
-import multiprocessing
-import os
 import platform
 import re
-import signal
-import threading
 import time
-from collections.abc import Callable, Generator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -24,9 +19,10 @@ from typing import Any
 import cattrs
 
 from nomad_agents.checkpoint import write_atomically
+from nomad_agents.experiments.pool import do_in_processes
 from nomad_agents.registry import find_config
 from nomad_mj.assets import find_robot, find_room
-from nomad_mj.errors import OutputError, WorkerError
+from nomad_mj.errors import OutputError
 
 Row = dict[str, Any]
 PACKAGES = ("nomad-mj", "mujoco", "numpy")
@@ -62,6 +58,16 @@ class Run:
         words = [re.sub(r"[^A-Za-z0-9.]+", "-", part) for part in parts]
         return f"{'_'.join(words)}_{self.seed:04d}.json"
 
+    def parameters(self) -> Row:
+        """Return what the names of a run stand for, as data: a result of other values is stale.
+
+        Raises
+        ------
+        NomadError
+            A name that stands for nothing.
+        """
+        return cattrs.unstructure(find_config(self.config))
+
 
 @dataclass
 class Result:
@@ -94,12 +100,12 @@ class Result:
 def _key(run: Run) -> Row:
     """Return what a file must agree with to be this run's: no stale numbers of another version."""
     key = {**asdict(run), "packages": {name: version(name) for name in PACKAGES}}
-    key["parameters"] = cattrs.unstructure(find_config(run.config))
-    key["files"] = [_digest(find_room(run.room)), _digest(find_robot(run.robot))]
+    key["parameters"] = run.parameters()
+    key["files"] = [digest(find_room(run.room)), digest(find_robot(run.robot))]
     return json.loads(json.dumps(key))
 
 
-def _digest(path: Path) -> str:
+def digest(path: Path) -> str:
     """Return what tells a file's content from any other; what it includes is not looked at."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
@@ -133,25 +139,20 @@ def _store(result: Result, folder: Path) -> None:
     write_atomically(folder / result.run.file_name, lambda file: file.write(text))
 
 
-def _obey() -> None:
-    """Leave Ctrl-C to the process that holds the pool; go when it goes, even if it was killed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_follow_parent, daemon=True).start()
+def describe_machine(wall: float) -> Row:
+    """Return where and with what a run was done, and how long it took [s]."""
+    return {
+        "system": platform.platform(),
+        "processor": platform.machine(),
+        "python": platform.python_version(),
+        "wall_s": round(wall, 3),
+    }
 
 
-def _follow_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)  # files are written whole or not at all: nothing is lost but this run
-
-
-def _timed(work: Callable[[Run, Path], Result], run: Run, folder: Path) -> Result:
+def _timed(work: Callable[[Run, Path], Result], folder: Path, run: Run) -> Result:
     began = time.perf_counter()
     result = work(run, folder)
-    wall = round(time.perf_counter() - began, 3)
-    result.machine |= {"system": platform.platform(), "processor": platform.machine()}
-    result.machine |= {"python": platform.python_version(), "wall_s": wall}
+    result.machine |= describe_machine(time.perf_counter() - began)
     _store(result, folder)
     return result
 
@@ -181,7 +182,7 @@ def do_runs(
     Raises
     ------
     WorkerError
-        A process was killed.
+        A run has killed its process again and again; the others are done.
     NomadError
         What a run raised; the results of those before it are kept.
     """
@@ -191,32 +192,9 @@ def do_runs(
             after_run(result)
     missing = [run for run, result in results.items() if result is None]
     if missing:
-        with closing(_do(missing, work, folder, jobs)) as done:
-            for result in done:
-                results[result.run] = result
+        doing = do_in_processes(partial(_timed, work, folder), missing, jobs)
+        with closing(doing) as done:
+            for run, result in done:
+                results[run] = result
                 after_run(result)
     return [result for result in results.values() if result is not None]
-
-
-def _do(
-    runs: Sequence[Run], work: Callable[[Run, Path], Result], folder: Path, jobs: int
-) -> Generator[Result, None, None]:
-    """Yield the results of runs as they come; whatever ends this ends the processes."""
-    # Spawned, not forked: a process starts without what this one has done so far.
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(min(jobs, len(runs)), mp_context=context, initializer=_obey)
-    try:
-        waiting = [pool.submit(_timed, work, run, folder) for run in runs]
-        for future in as_completed(waiting):
-            yield future.result()
-    except BrokenProcessPool:
-        raise WorkerError(
-            "a process was killed, perhaps for want of memory; what is done is kept: take "
-            "fewer --jobs and run again"
-        ) from None
-    except BaseException:
-        for process in multiprocessing.active_children():
-            process.terminate()  # nobody who interrupts wants to wait for the present runs
-        raise
-    finally:
-        pool.shutdown(cancel_futures=True)

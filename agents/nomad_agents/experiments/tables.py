@@ -1,5 +1,6 @@
 """The table of an experiment: the paper's numbers, ours over all runs, and the baselines'."""
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -28,14 +29,12 @@ HEADINGS = (
     "planner at every decision",
 )
 _IQM = 3
-_NARROW = (
-    "",
-    "paper",
-    "ours: median\n[quartiles]",
-    "ours: IQM\n(95 %)",
-    "straight to\nthe goal",
-    "planner at every\ndecision",
-)
+_NARROW = {
+    "ours: median [quartiles]": "ours: median\n[quartiles]",
+    "ours: IQM (95 %)": "ours: IQM\n(95 %)",
+    "straight to the goal": "straight to\nthe goal",
+    "planner at every decision": "planner at every\ndecision",
+}
 
 
 class TextTable(NamedTuple):
@@ -68,50 +67,59 @@ def _cells(row: TableRow, results: Sequence[Result]) -> tuple[str, str, str, str
         strata(results, row.key, row.case, agent) for agent in (LEARNER, STRAIGHT, PLANNER)
     )
     if row.total:
-        straight, planner = (_total(each) for each in baselines)
-        return _total(ours), "", straight, planner
-    straight, planner = (_median(each, row.digits) for each in baselines)
-    return _median(ours, row.digits), _mean(spread(ours), row.digits), straight, planner
+        straight, planner = (total_cell(each) for each in baselines)
+        return total_cell(ours), "", straight, planner
+    straight, planner = (median_cell(each, row.digits) for each in baselines)
+    return median_cell(ours, row.digits), mean_cell(spread(ours), row.digits), straight, planner
 
 
-def _total(values: Sequence[FloatArray]) -> str:
+def total_cell(values: Sequence[FloatArray]) -> str:
+    """Return how many runs do something, and of how many."""
     runs = np.concatenate([np.empty(0), *values])
     counted = runs[np.isfinite(runs)]
     return f"{counted.sum():.0f} of {len(counted)}" if len(counted) else ""
 
 
-def _median(values: Sequence[FloatArray], digits: int) -> str:
+def median_cell(values: Sequence[FloatArray], digits: int) -> str:
     """Return median and quartiles, and how many runs have the number if not all have."""
     over = spread(values)
     if not over.count:
         return ""
-    first, middle, third = (_number(v, digits) for v in (over.q1, over.median, over.q3))
+    first, middle, third = (number_cell(v, digits) for v in (over.q1, over.median, over.q3))
     # Equal runs leave nothing to enclose.
     text = middle if first == middle == third else f"{middle} [{first}, {third}]"
     runs = sum(len(each) for each in values)
     return text if over.count == runs else f"{text}, {over.count} of {runs} runs"
 
 
-def _mean(over: Spread, digits: int) -> str:
+def mean_cell(over: Spread, digits: int) -> str:
+    """Return the interquartile mean and its interval."""
     if not over.count:
         return ""
-    middle = _number(over.iqm, digits)
+    middle = number_cell(over.iqm, digits)
     if np.isnan(over.low):
         return middle
-    return f"{middle} ({_number(over.low, digits)}, {_number(over.high, digits)})"
+    return f"{middle} ({number_cell(over.low, digits)}, {number_cell(over.high, digits)})"
 
 
-def _number(value: float, digits: int) -> str:
+def number_cell(value: float, digits: int) -> str:
+    """Return a number with so many decimals, never a negative zero."""
     text = f"{value:.{digits}f}"
     return text.removeprefix("-") if float(text) == 0 else text
 
 
 def as_rich(table: TextTable) -> rich.table.Table:
-    """Return a table for the terminal; without the mean where no row has one."""
-    kept = [n for n in range(len(HEADINGS)) if n != _IQM or any(row[n] for row in table.rows)]
+    """Return a table for the terminal; an experiment's without the mean where no row has one."""
+    kept = [
+        number
+        for number, heading in enumerate(table.headings)
+        if heading != HEADINGS[_IQM] or any(row[number] for row in table.rows)
+    ]
     shown = rich.table.Table(title=Text(table.title))
     for number in kept:
-        shown.add_column(Text(_NARROW[number]), justify="right" if number else "left")
+        heading = table.headings[number]
+        narrow = _NARROW.get(heading, re.sub(r": | (?=[\[(])", "\n", heading))
+        shown.add_column(Text(narrow), justify="right" if number else "left", overflow="fold")
     for row in table.rows:
         shown.add_row(*(Text(row[number]) for number in kept))  # as text: brackets are no markup
     return shown

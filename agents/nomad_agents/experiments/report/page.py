@@ -2,15 +2,13 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from functools import cache
 from pathlib import Path
 from typing import NamedTuple
-
-import jinja2
 
 from nomad_agents.checkpoint import write_atomically
 from nomad_agents.experiments.report.embed import Picture, data_uri, picture
 from nomad_agents.experiments.report.section import NoVideo, Section, Tabular
+from nomad_agents.experiments.report.templates import find_template
 
 _IDS = ("reading", "summary", "tables", "making", "task-title", "task-text")  # of the templates
 _VERDICTS = {"holds": "holds", "holds in part": "part", "does not hold": "fails"}
@@ -43,18 +41,6 @@ class _Part(NamedTuple):
     no_film: str
 
 
-@cache
-def _template() -> jinja2.Template:
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("nomad_agents.experiments.report", "."),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template("page.html.jinja")
-
-
 def write_report(
     path: Path,
     sections: Sequence[Section],
@@ -85,7 +71,9 @@ def write_report(
         for anchor, section in zip(_anchors(sections), sections, strict=True)
     ]
     counts = {mark: sum(part.mark == mark for part in parts) for mark in _VERDICTS.values()}
-    text = _template().render(parts=parts, facts=facts, seeds=seeds, counts=counts)
+    text = find_template("page.html.jinja").render(
+        parts=parts, facts=facts, seeds=seeds, counts=counts
+    )
     write_atomically(path, lambda file: file.write(text.encode()))
 
 
@@ -107,7 +95,7 @@ def _anchors(sections: Sequence[Section]) -> Iterator[str]:
 
 
 def _part(anchor: str, section: Section, folder: Path) -> _Part:
-    headings, rows = _telling(section.table)
+    headings, rows = telling(section.table)
     figures = [
         _Figure(
             picture(Path(each.path)),
@@ -133,7 +121,7 @@ def _sentence(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}" + ("" if text.endswith((".", "!", "?")) else ".")
 
 
-def _telling(table: Tabular) -> tuple[list[str], list[list[str]]]:
+def telling(table: Tabular) -> tuple[list[str], list[list[str]]]:
     """Return headings and rows without the columns in which no row has anything."""
     kept = [n for n in range(len(table.headings)) if n == 0 or any(row[n] for row in table.rows)]
     return [table.headings[n] for n in kept], [[row[n] for n in kept] for row in table.rows]

@@ -29,11 +29,11 @@ def provenance(study: Study, results: Sequence[Result]) -> list[tuple[str, str]]
         ("Seeds", seeds),
         ("Runs", f"{counts}; {seconds / _HOUR:.1f} hours of computing"),
         ("Versions", ", ".join(f"{name} {version(name)}" for name in PACKAGES)),
-        ("Python", _all_of(results, "python")),
-        ("Machine", _all_of(results, "system")),
+        ("Python", all_of(results, "python")),
+        ("Machine", all_of(results, "system")),
     ]
 
 
-def _all_of(results: Sequence[Result], key: str) -> str:
+def all_of(results: Sequence[Result], key: str) -> str:
     """Return every value that the machines of the results have under a name."""
     return "; ".join(sorted({str(r.machine[key]) for r in results if key in r.machine})) or "-"

@@ -1,0 +1,54 @@
+"""Performance profiles of all agents, a panel a set."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from nomad_agents.benchmark.figures.looks import look, signs
+from nomad_agents.benchmark.profiles import Profile
+from nomad_agents.experiments.figures.style import grid, legend_below, sheet
+
+_COLUMNS = 3
+_PANEL, _LEGEND = (3.3, 2.7), 0.9  # [in]
+
+
+def draw_profiles(groups: Mapping[str, Mapping[str, Profile]], path: Path, score: str) -> None:
+    """Draw a profile a panel and agent, with its band.
+
+    Parameters
+    ----------
+    groups : mapping of str to mapping
+        By the panel's title, profiles by agent.
+    path : Path
+        Without a suffix: a PDF and a PNG are written.
+    score : str
+        What is scored.
+    """
+    columns = min(_COLUMNS, len(groups))
+    rows = -(-len(groups) // columns)
+    labels = list(dict.fromkeys(label for profiles in groups.values() for label in profiles))
+    width = max(_PANEL[0] * columns, 6.4)
+    with sheet(path, width, _PANEL[1] * rows + _LEGEND) as figure:
+        panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+        for axes in panels.flat[len(groups) :]:
+            axes.set_visible(False)
+        for axes, (title, profiles) in zip(panels.flat, groups.items(), strict=False):
+            for label, profile in profiles.items():
+                seen = look(label)
+                axes.fill_between(
+                    profile.thresholds, profile.low, profile.high, color=seen.colour, alpha=0.13,
+                    lw=0, step="post",
+                )  # fmt: skip
+                axes.step(
+                    profile.thresholds, profile.share, where="post", color=seen.colour,
+                    ls=seen.style, lw=seen.width,
+                )  # fmt: skip
+            axes.set_title(title)
+            axes.set_xlim(0, 1)
+            axes.set_ylim(-0.02, 1.04)
+            grid(axes, "both")
+        for number, axes in enumerate(panels.flat[: len(groups)]):
+            lowest = number + columns >= len(groups)
+            axes.tick_params(labelbottom=lowest)
+            axes.set_xlabel(f"{score} >" if lowest else "")
+        figure.supylabel("share of runs above it", fontsize=12)
+        legend_below(figure, signs(labels), 4 if columns > 2 else 3)

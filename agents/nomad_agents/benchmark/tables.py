@@ -1,0 +1,99 @@
+"""The benchmark's tables: all sets at a glance, each set's metrics, and what learning took."""
+
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
+
+from nomad_agents.benchmark.numbers import Group, has, spread_of, strata
+from nomad_agents.experiments.runs import Result
+from nomad_agents.experiments.tables import TextTable, mean_cell, median_cell, total_cell
+
+
+class Column(NamedTuple):
+    """A column: its heading, the number's name in the rows, decimals, and what is said of it."""
+
+    heading: str
+    key: str
+    digits: int
+    kind: Literal["mean", "median", "total"]
+
+
+AT_A_GLANCE = {
+    "success_rate": "Goal reached, every set",
+    "spl": "SPL, every set",
+}
+DRIVING = (
+    Column("goal reached", "success_rate", 3, "mean"),
+    Column("without a virtual collision", "strict_success_rate", 3, "mean"),
+    Column("SPL", "spl", 3, "mean"),
+    Column("path / shortest", "path_ratio_median", 3, "median"),
+    Column("time, s", "mean_time_s", 1, "median"),
+    Column("least clearance, m", "min_clearance_m", 3, "median"),
+    Column("virtual collisions an episode", "virtual_collisions_per_episode", 2, "median"),
+    Column("bumper contacts an episode", "bumper_contacts_per_episode", 2, "median"),
+    Column("BARN score", "barn_score", 3, "mean"),
+)
+LEARNING = (
+    Column("runs that solve every start", "learn_solved_all", 0, "total"),
+    Column("decisions until then", "decisions_to_test", 0, "median"),
+    Column("simulated hours until then", "sim_h_to_test", 2, "median"),
+    Column("decisions until 90 %", "decisions_to_90", 0, "median"),
+    Column("simulated hours until 90 %", "sim_h_to_90", 2, "median"),
+    Column("decisions until 90 % unaided", "unaided_decisions_to_90", 0, "median"),
+    Column("decisions in all", "learn_decisions", 0, "median"),
+    Column("virtual collisions while learning", "learn_virtual_collisions", 0, "median"),
+    Column("bumper contacts while learning", "learn_bumper_contacts", 0, "median"),
+    Column("minutes of computing", "wall_min", 1, "median"),
+)
+
+
+def glance_table(groups: Sequence[Group], key: str) -> TextTable:
+    """Return the interquartile mean of one number, agents by sets, and over all of them."""
+    agents = list(dict.fromkeys(agent for group in groups for agent in group.agents))
+    rows: list[tuple[str, ...]] = []
+    for agent in agents:
+        held = [group.agents.get(agent, []) for group in groups]
+        every = [result for results in held for result in results]
+        columns = [*held, every] if len(groups) > 1 else held
+        rows.append((agent, *(mean_cell(spread_of(each, key), 2) for each in columns)))
+    names = [group.name for group in groups]
+    headings = ("", *names, *(["all runs"] if len(groups) > 1 else []))
+    return TextTable(AT_A_GLANCE[key], headings, tuple(rows))
+
+
+def driving_table(group: Group) -> TextTable:
+    """Return what came of the evaluation in one set."""
+    return TextTable(f"{group.name}: driving", _headings(DRIVING), _rows(group.agents, DRIVING))
+
+
+def learning_table(group: Group) -> TextTable | None:
+    """Return what learning one set took, None if nobody learnt."""
+    learners = {
+        agent: results for agent, results in group.agents.items() if has(results, "learn_decisions")
+    }
+    if not learners:
+        return None
+    return TextTable(f"{group.name}: learning", _headings(LEARNING), _rows(learners, LEARNING))
+
+
+def _headings(columns: Sequence[Column]) -> tuple[str, ...]:
+    return ("", *(column.heading for column in columns))
+
+
+def _rows(
+    agents: dict[str, list[Result]], columns: Sequence[Column]
+) -> tuple[tuple[str, ...], ...]:
+    return tuple(
+        (agent, *(_cell(results, column) for column in columns))
+        for agent, results in agents.items()
+    )
+
+
+def _cell(results: Sequence[Result], column: Column) -> str:
+    if not has(results, column.key):
+        return ""
+    values = strata(results, column.key)
+    if column.kind == "total":
+        return total_cell(values)
+    if column.kind == "mean":
+        return mean_cell(spread_of(results, column.key), column.digits)
+    return median_cell(values, column.digits) or "never"
