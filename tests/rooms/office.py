@@ -23,7 +23,8 @@ def office(cells: int = 400, noise: float = 0.02) -> Occupancy:
             grid[y : y + 70, x : x + 4] = OCCUPIED
             grid[y + 70 : y + 73, x + 40 : x + 60] = FREE
             grid[y : y + 3, x + 40 : x + 60] = FREE if y else OCCUPIED
-            grid[np.hypot(rows - y - 30, columns - x - 20) < 8] = OCCUPIED
+            here = np.s_[y + 20 : y + 40, x + 10 : x + 30]
+            grid[here][np.hypot(rows[here] - y - 30, columns[here] - x - 20) < 8] = OCCUPIED
             grid[y + 30 : y + 45, x + 50 : x + 64] = OCCUPIED
     grid[-3:] = grid[:, -3:] = OCCUPIED
     edge = ndimage.binary_dilation(grid == OCCUPIED) & (grid == FREE)
