@@ -66,6 +66,17 @@ def test_a_room(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert (tmp_path / "check_corridor.png").stat().st_size > 5_000
 
 
+def test_a_room_beside_the_plan_it_was_made_of(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan, room = tmp_path / "plan.yaml", tmp_path / "plan.xml"
+    plan.write_text("size: [6, 4]\n")
+    assert main(["room", str(plan), "-o", str(room)]) == 0
+    capsys.readouterr()
+    code, found, _ = checked(capsys, str(room), "--out", str(tmp_path))
+    assert code == 0 and found["room"] == "plan" and found["starts"] > 0
+
+
 FAULTS = {
     "blind": ([0, 90], (), "no cone covers"),
     "short": (range(0, 360, 30), ('cutoff="1.5"', 'cutoff="0.9"'), "see 0.9 m, moves are up to"),

@@ -94,7 +94,7 @@ def _folder(out: str) -> Path:
 
 
 def is_room(name: str) -> bool:
-    """Return whether a name or a file is that of a room: it has no actuator, or has a goal.
+    """Return whether a name or a file is that of a room: no actuator, and a goal or no data sheet.
 
     Raises
     ------
@@ -111,7 +111,10 @@ def is_room(name: str) -> bool:
         spec = mujoco.MjSpec.from_file(str(path))
     except (ValueError, RuntimeError, UnicodeDecodeError):
         return False
-    return not list(spec.actuators) and not find_sheet(path)
+    if list(spec.actuators):
+        return False
+    # A plan or a map beside the room made of it looks like a data sheet.
+    return spec.site("goal") is not None or not find_sheet(path)
 
 
 def _print_faults(screen: Console, faults: list[str], picture: Path) -> None:
