@@ -93,7 +93,7 @@ def test_help_lists_the_commands(run: Run) -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        ("nothing", "unknown command 'nothing'; there are: bench, check, demo, evaluate"),
+        ("nothing", "unknown command 'nothing'; there are: bench, benchmark, check, demo, "),
         ("", "the command must come first, one of: train, evaluate, "),
         ("--json train", "the command must come first, one of: train, "),
         ("train --no-such-option", "train: unknown option '--no-such-option'; there are: --room "),
@@ -191,8 +191,11 @@ def test_list_names_everything(run: Run) -> None:
     [
         (["train", "--room", "attic"], "unknown room 'attic'; there are: clutter, concave_room"),
         (["evaluate", "--robot", "r2d2"], "unknown robot 'r2d2'; there are: khepera, nomad"),
-        (["train", "--agent", "x"], "unknown agent 'x'; there are: CHECKPOINT.npz, planner"),
-        (["evaluate", "--agent", "x"], "unknown agent 'x'; there are: CHECKPOINT.npz, planner"),
+        (["train", "--agent", "x"], "unknown agent 'x'; there are: CHECKPOINT.npz, dwa, planner, "),
+        (
+            ["evaluate", "--agent", "x"],
+            "unknown agent 'x'; there are: CHECKPOINT.npz, dwa, planner, ",
+        ),
         (["record", "--agent", "no.npz"], "checkpoint 'no.npz' does not exist"),
         (["train", "--agent", "planner"], "agent 'planner' does not learn; try 'reactive_planner'"),
         (["train", "--agent", "straight"], "agent 'straight' does not learn"),

@@ -1,6 +1,7 @@
 """A long run, made short: it counts what it does and sees what it looks for."""
 
 import json
+import mmap
 from typing import Any
 
 import mujoco
@@ -22,7 +23,7 @@ def test_many_episodes_neither_grow_nor_warn(robots: int) -> None:
 
 
 def test_what_grows_and_warns_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    kept: list[bytes] = []
+    kept: list[mmap.mmap] = []
     load = soaking.nomad_mj.load
 
     def leaking(*args: Any, **kwargs: Any) -> Any:
@@ -30,7 +31,8 @@ def test_what_grows_and_warns_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
         reset = env.reset
 
         def leak() -> Any:
-            kept.append(bytes([len(kept) % 255 + 1]) * 1_000_000)
+            kept.append(mmap.mmap(-1, 1 << 20))  # memory of the process alone, not of its heap
+            kept[-1].write(b"x" * (1 << 20))
             said = mujoco.get_mju_user_warning()
             if said is not None:
                 said("something is amiss")

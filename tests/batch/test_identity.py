@@ -1,11 +1,11 @@
 """World by world the batch is the single environment, to the bit."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import OwnRoom
 from identity import BatchEnv, check_same, drawn_actions, singles
 
 from nomad_mj import (
@@ -22,6 +22,7 @@ from nomad_mj import (
     load_batch,
 )
 
+OwnRoom = Callable[..., Path]
 STEPS = {"motor": 30, "path_finding": 3}
 LIMITS = {"motor": 1.2, "path_finding": 12.0}
 NOISY: dict[str, Any] = {

@@ -128,10 +128,10 @@ def test_what_a_plan_leaves_out_is_chosen(tmp_path: Path) -> None:
         ("size: [4, 4]\nobstacles: [{box: [1, 1, -1, 1]}]", "size -1.0: must be a number"),
         ("size: [4, 4]\nobstacles: [{polygon: [[0, 0], [2, 0], [1.2, 0.8], [2, 2]]}]", "convex"),
         ("outline: [[0, 0], [4, 4], [4, 0], [0, 4]]", "its edges cross"),
-        ("size: [4, 4]\ngoal: [9, 9]\nstarts: [[1, 1]]", "cannot reach the goal"),
+        ("size: [4, 4]\ngoal: [9, 9]\nstarts: [[1, 1]]", "goal (9, 9) is outside"),
         ("size: [4, 4]\nobstacles: [{box: [2, 2, 4, 4]}]", "fits nowhere"),
         ("size: [1.5, 1.5]", "has only 0 of 1 starts"),
-        ("a: &a [*a]", "knows no 'a'"),
+        ("a: &a [*a]", "*a stands for something else; write that out"),
     ],
 )
 def test_mistakes_in_a_plan_are_told_in_one_line(text: str, told: str, tmp_path: Path) -> None:
