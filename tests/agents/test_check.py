@@ -14,7 +14,7 @@ from nomad_mj.assets import list_robots
 from nomad_mj.scene import build_scene
 
 RingRobot = Callable[..., Path]
-# From the true pose to odometry's after a square of 2 m: [m], [deg].
+# After a square of 2 m from where it should be, and from where odometry puts it: [m], [deg].
 CLOSE = {
     "nomad200": (0.001, 0.1),
     "omnibot": (0.001, 0.1),
@@ -40,10 +40,12 @@ def test_test_patterns_end_where_they_should(robot: str) -> None:
     way, heading = CLOSE[robot]
     drifts: list[Drift] = drive_patterns(robot)
     assert [drift.finished for drift in drifts] == [True] * 3
-    straight, _, square = drifts
-    assert straight.off_target < 0.01
-    assert square.off_odometry < way and square.off_target < max(way, 0.012)
+    straight, turn, square = drifts
+    assert straight.off_target < 0.001 and abs(math.degrees(straight.off_facing)) < 0.1
+    assert abs(math.degrees(turn.off_facing)) < heading
+    assert square.off_odometry < way and square.off_target < way
     assert abs(math.degrees(square.off_heading)) < heading
+    assert abs(math.degrees(square.off_facing)) < heading
 
 
 def test_a_robot(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

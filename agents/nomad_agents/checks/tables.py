@@ -76,8 +76,9 @@ def drift_table(drifts: list[Drift]) -> Table:
     table = Table(
         "pattern",
         "from target [mm]",
+        "[deg]",
         "from odometry [mm]",
-        "heading [deg]",
+        "[deg]",
         "time [s]",
         title="Test patterns, without noise",
     )
@@ -85,6 +86,7 @@ def drift_table(drifts: list[Drift]) -> Table:
         table.add_row(
             drift.name + ("" if drift.finished else " (not finished)"),
             f"{1000 * drift.off_target:.1f}",
+            f"{math.degrees(drift.off_facing):.2f}",
             f"{1000 * drift.off_odometry:.1f}",
             f"{math.degrees(drift.off_heading):.2f}",
             f"{drift.seconds:.1f}",
