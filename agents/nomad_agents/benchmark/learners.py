@@ -1,6 +1,6 @@
 """How each agent of the benchmark comes to be: by learning, or at once.
 
-A new one is a class derived from `Learner` and a line in `LEARNERS`.
+A new one is a class derived from `Learner` and a line where `LEARNERS` is made.
 """
 
 import copy
@@ -124,7 +124,7 @@ class ReactionLearner(Learner):
 
     name = ReactivePlanner.name
     variants = tuple(CONFIGS)
-    _MOST_DECISIONS = 1500  # four passes or so; what is learnt at all is learnt by then
+    _MOST_DECISIONS = 50  # a start of the room; three passes at least, mostly more
     _MOST_PASSES = 40
 
     def parameters(self, variant: str) -> Any:
@@ -149,7 +149,7 @@ class ReactionLearner(Learner):
                     check(training)
 
             check(latest)
-            most = min(lesson.budget, self._MOST_DECISIONS)
+            most = min(lesson.budget, self._MOST_DECISIONS * len(env.scene.arena.starts))
             config = TrainingConfig(lesson.seed, max_passes=self._MOST_PASSES, max_decisions=most)
             row, _ = learn(env, agent, config, watch)
             if latest.decisions > checks.latest:  # it gave up within a pass
@@ -209,19 +209,21 @@ def _spent(training: Training | DeepTraining) -> dict[str, float]:
     return {name: getattr(training, name) for name in names}
 
 
-_REGISTERED: tuple[Learner, ...] = (
-    *(Untaught(name) for name in AGENTS if name != ReactivePlanner.name),
-    ReactionLearner(),
-    *(DeepLearner(name, settings()) for name, settings in DEEP.items()),
-)
-LEARNERS: Mapping[str, Learner] = {each.name: each for each in _REGISTERED}
+LEARNERS: Mapping[str, Learner] = {
+    each.name: each
+    for each in (
+        *(Untaught(name) for name in AGENTS if name != ReactivePlanner.name),
+        ReactionLearner(),
+        *(DeepLearner(name, settings()) for name, settings in DEEP.items()),
+    )
+}
 
 
 def usual_agents() -> tuple[str, ...]:
     """Return all agents that need no hours, the learners among them in all their variants."""
     return tuple(
         f"{each.name}:{variant}" if each.learns else each.name
-        for each in _REGISTERED
+        for each in LEARNERS.values()
         if not each.deep
         for variant in (each.variants if each.learns else each.variants[:1])
     )
