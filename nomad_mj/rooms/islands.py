@@ -37,7 +37,8 @@ def fit_islands(inside: Mask) -> tuple[list[Shape], Mask]:
         There are too many things.
     """
     labels = np.empty(inside.shape, dtype=np.int32)
-    count = int(ndimage.label(~inside, np.ones((3, 3)), output=labels)) - 1
+    ndimage.label(~inside, np.ones((3, 3)), output=labels)
+    count = int(labels.max()) - 1  # the first is what lies outside
     if count > MOST_SHAPES:
         raise too_many(count)
     shapes: list[Shape] = []

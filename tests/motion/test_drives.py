@@ -154,7 +154,7 @@ def test_the_kind_of_wheels_is_told_by_what_they_can_do() -> None:
 
 @given(turn=st.floats(-0.1, 0.1))
 def test_a_robot_on_two_wheels_turns_about_their_axle(turn: float) -> None:
-    ways = np.array([-HALF_TRACK * turn, HALF_TRACK * turn])
+    ways = [-HALF_TRACK * turn, HALF_TRACK * turn]
     travel = BEHIND.travel(ways, 0.0)
     assert (travel.forward, travel.heading) == pytest.approx((0.0, turn), abs=1e-12)
     assert travel.sideways == pytest.approx(-0.05 * turn, abs=1e-12)

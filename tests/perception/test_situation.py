@@ -64,7 +64,7 @@ def test_a_stack_is_perceived_as_its_parts_bit_for_bit(
     for i in np.ndindex(2, 4):
         alone = perceive(ranges[i], float(heading[i]), goal[i], NOMAD, spec)
         for together, one in zip(stack, alone, strict=True):
-            np.testing.assert_array_equal(together[i], one)
+            np.testing.assert_array_equal(np.asarray(together)[i], one)
 
 
 @given(st.floats(0.01, 10), st.floats(-3.1, 3.1))

@@ -23,7 +23,7 @@ def started(robot: str = "nomad200") -> MotorEnvironment:
 
 
 def senses(physics: NavigationPhysics) -> list[float]:
-    parts = (physics.pose(), physics.cone_ranges(), physics.encoders(), physics.bumpers())
+    parts = (np.array(physics.pose()), physics.cone_ranges(), physics.encoders(), physics.bumpers())
     return np.concatenate(parts).tolist()
 
 
