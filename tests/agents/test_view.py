@@ -123,6 +123,8 @@ def test_ctrl_c_ends_it_without_a_word() -> None:
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        # A shell lets what it runs in the background ignore Ctrl-C, and so would this.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as viewing:
         assert viewing.stdout is not None
         line = viewing.stdout.readline()
