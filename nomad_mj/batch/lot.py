@@ -179,9 +179,11 @@ class Lot:
             sensordata, state = sensordata[rows], state[rows]
         distances = readout.distances(sensordata, self._grazing)
         if self._lights:
-            for row, own in zip(rows.tolist(), distances, strict=True):
+            distances = distances.copy()
+            for number, row in enumerate(rows.tolist()):
                 self._batch.get_data(row, self._scratch)
-                self._lights[row].judge(own, self._models[row], self._scratch)
+                light, model = self._lights[row], self._models[row]
+                distances[number] = light.judge(distances[number], model, self._scratch)
         return Sensed(
             readout.cones(distances),
             readout.bumpers(state),

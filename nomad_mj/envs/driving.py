@@ -59,6 +59,10 @@ class Lookout:
             config, security_distance=max(config.security_distance, 1.1 * nearest)
         )
         self._bearings = np.concatenate([ring.bearings for ring in layout.rings])
+        self._ahead, self._beside = (
+            math.cos(min(angle + 1e-9, math.pi))
+            for angle in (config.ahead, max(config.ahead, math.pi / 2))
+        )
 
     def slack(self, heading: FloatArray | float, sensors: FloatArray | float) -> FloatArray:
         """Return how much nearer things may be before each sensor, (..., C) [m]; infinite: behind.
@@ -72,11 +76,10 @@ class Lookout:
         sensors : array (...)
             Direction of the frame of its range sensors [rad].
         """
-        turn = self._bearings + np.asarray(sensors)[..., None] - np.asarray(heading)[..., None]
-        off = np.abs((turn + np.pi) % (2 * np.pi) - np.pi)
-        motion = self.motion
-        beside = np.where(off <= max(np.pi / 2, motion.ahead) + 1e-9, motion.beside, np.inf)
-        return np.where(off <= motion.ahead + 1e-9, 0.0, beside)
+        # By their cosines, which need not be brought into a half-turn first.
+        along = np.cos(self._bearings + np.asarray(sensors - heading)[..., None])
+        beside = np.where(along >= self._beside, self.motion.beside, np.inf)
+        return np.where(along >= self._ahead, 0.0, beside)
 
 
 class Driving:

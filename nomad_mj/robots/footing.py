@@ -43,7 +43,7 @@ class Footing:
     def pose(self, qpos: FloatArray) -> Pose:
         """Return the pose, given ``qpos`` (nq,)."""
         if self.heading >= 0:
-            return Pose(float(qpos[self.x]), float(qpos[self.y]), float(qpos[self.heading]))
+            return Pose(qpos.item(self.x), qpos.item(self.y), qpos.item(self.heading))
         x, y, _, w, i, j, k = qpos[self.x : self.x + 7].tolist()
         return Pose(x, y, math.atan2(2 * (w * k + i * j), 1 - 2 * (j * j + k * k)))
 

@@ -101,9 +101,12 @@ class Infrared:
         self._reference = effects.reference
         self._struck = np.full(1, -1, dtype=np.int32)
 
-    def judge(self, distances: FloatArray, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        """Change the distances of the rays, (R,) [m] from their sites, to those that they seem."""
-        near = np.flatnonzero(distances[self._rays] < self._maximum).tolist()
+    def judge(
+        self, distances: FloatArray, model: mujoco.MjModel, data: mujoco.MjData
+    ) -> FloatArray:
+        """Return how far rays seem to go, (R,) [m] from their sites, given how far they do."""
+        own = distances[self._rays]
+        near = np.flatnonzero((own >= 0) & (own < self._maximum)).tolist()
         struck: dict[int, int] = {}  # by ray
         for ray in near:
             site = self._sites[ray]
@@ -123,4 +126,6 @@ class Infrared:
         if struck:
             # As the model is now: in a large room its geoms change, see `Nearby`.
             light = reflectances(model, np.array([*struck.values()]))
+            distances = distances.copy()
             distances[self._rays[[*struck]]] *= np.sqrt(self._reference / light)
+        return distances

@@ -12,7 +12,7 @@ from nomad_mj.motion import SynchroDrive
 from nomad_mj.robots import RobotDescription
 from nomad_mj.scene import Scene
 from nomad_mj.tasks.infrared import Infrared, InfraredEffects
-from nomad_mj.tasks.readout import Readout
+from nomad_mj.tasks.readout import Readout, as_span
 from nomad_mj.types import FloatArray, IntArray, Pose
 
 _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
@@ -112,9 +112,8 @@ class NavigationPhysics(Physics):
         self._mocap_pos: FloatArray = data.mocap_pos
         self._qpos: FloatArray = data.qpos
         self._ctrl: FloatArray = data.ctrl
-        self._controls = self.robot.controls
+        self._controls = as_span(self.robot.controls)
         self._readout = Readout.of(model, self.robot)
-        self._ray_buffer = np.empty(len(self.robot.rays.address))
         self._bind_steering()
         self._see_to_near()
         mujoco.mj_step1(model, data)  # dm_control has just computed a copy with its motors off
@@ -197,9 +196,9 @@ class NavigationPhysics(Physics):
         Rays of specular rings whose echo is lost count as a miss, see `RangeNoise.grazing`; those
         of infrared rings are as long as the light makes them seem, see `InfraredEffects`.
         """
-        distances = self._readout.distances(self._sensordata, self.grazing, self._ray_buffer)
+        distances = self._readout.distances(self._sensordata, self.grazing)
         if self.infrared is not None:
-            self.infrared.judge(distances, *self._raw)
+            distances = self.infrared.judge(distances, *self._raw)
         return self._readout.cones(distances)
 
     def bumpers(self) -> FloatArray:
