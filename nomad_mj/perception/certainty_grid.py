@@ -10,11 +10,12 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from nomad_mj.types import FloatArray, IntArray, SensorLayout
+from nomad_mj.types import FloatArray, IntArray, RangeRing, SensorLayout
 
 _BINS = 1440  # quarters of a degree: a turret's heading is rounded to this
-_AT_ONCE = 16  # grids that are filled together: what they take stays in the processor's cache
+_AT_ONCE = 64  # grids that are filled together: what they take stays in the processor's cache
 
 
 @dataclass(frozen=True)
@@ -43,16 +44,27 @@ class GridSpec:
     unseen: float = 0.5
 
 
-class _Tables(NamedTuple):
-    """What depends on the layout alone; K is the largest number of cones that cover a place."""
+class _Layer(NamedTuple):
+    """Cones of a ring of which none covers another; P places: cells that they reach, of n robots.
 
-    sensor: IntArray  # (K, bins) sensors whose cone covers a direction, count where there is none
-    certainty: FloatArray  # (K, bins) certainty at that direction
-    reach: FloatArray  # (K, bins) farthest distance from the centre that a sensor tells of
+    Of places, arrays hold `_AT_ONCE` robots' worth.
+    """
+
+    covered: npt.NDArray[np.bool_] | None  # (bins,) whether a cone covers a direction; None: all
+    sensor: IntArray  # (bins,) which
+    certainty: FloatArray  # (bins,) at that direction
+    place: IntArray | None  # (P,) each place, as an index of grids (n, cells**2); None: all
+    robot: IntArray  # (P,) its robot's first reading, as an index of readings (n, count)
+    distance: FloatArray  # (P,) from its robot's centre [m]
+
+
+class _Tables(NamedTuple):
+    """What depends on the layout alone."""
+
+    layers: tuple[_Layer, ...]
     limit: FloatArray  # (count,) readings from here on are a miss
     angle: FloatArray  # (cells**2,) bearing of each cell's centre, in bins
-    distance: FloatArray  # (cells**2,) from the robot's centre to each cell's centre
-    outside: FloatArray  # (cells**2,) 0 where the robot itself stands, else 1
+    inside: IntArray  # cells where the robot itself stands
 
 
 def cell_centres(spec: GridSpec) -> FloatArray:
@@ -63,30 +75,53 @@ def cell_centres(spec: GridSpec) -> FloatArray:
 
 @lru_cache(maxsize=16)
 def _tables(layout: SensorLayout, spec: GridSpec) -> _Tables:
-    bearings = np.concatenate([ring.bearings for ring in layout.rings])
-    sizes = [len(ring.bearings) for ring in layout.rings]
-    half_angle = np.repeat([ring.half_angle for ring in layout.rings], sizes)
-    max_range = np.repeat([ring.max_range for ring in layout.rings], sizes)
-    direction = np.arange(_BINS)[:, None] * (2 * np.pi / _BINS)
-    off_axis = np.abs((direction - bearings + np.pi) % (2 * np.pi) - np.pi)
-    covers = off_axis <= half_angle + np.pi / _BINS
-    depth = max(int(covers.sum(axis=1).max()), 1)
-    order = np.argsort(~covers, axis=1, kind="stable")[:, :depth]
-    covered = np.take_along_axis(covers, order, axis=1)
-    relative = np.take_along_axis(off_axis / half_angle, order, axis=1)
-    sensor = np.where(covered, order, len(bearings))
-    certainty = 1 - (1 - spec.edge_certainty) * np.minimum(relative, 1.0) ** 2
     centres = cell_centres(spec).reshape(-1, 2)
     distance = np.hypot(centres[:, 0], centres[:, 1])
+    sizes = [len(ring.bearings) for ring in layout.rings]
+    max_range = np.repeat([ring.max_range for ring in layout.rings], sizes)
+    firsts = np.cumsum([0, *sizes])
     return _Tables(
-        sensor=np.ascontiguousarray(sensor.T),
-        certainty=np.ascontiguousarray(certainty.T),
-        reach=np.ascontiguousarray(np.append(max_range + layout.radius, -np.inf)[sensor].T),
+        layers=tuple(
+            layer
+            for ring, first in zip(layout.rings, firsts.tolist(), strict=False)
+            for layer in _layers(ring, first, distance, layout, spec)
+        ),
         limit=np.minimum(max_range, spec.perception_range),
         angle=np.arctan2(centres[:, 1], centres[:, 0]) * (_BINS / (2 * np.pi)),
-        distance=distance,
-        outside=(distance > layout.radius).astype(np.float64),
+        inside=np.flatnonzero(distance <= layout.radius),
     )
+
+
+def _layers(
+    ring: RangeRing, first: int, distance: FloatArray, layout: SensorLayout, spec: GridSpec
+) -> list[_Layer]:
+    """Return the layers of a ring whose first sensor is number `first`."""
+    direction = np.arange(_BINS)[:, None] * (2 * np.pi / _BINS)
+    off_axis = np.abs((direction - ring.bearings + np.pi) % (2 * np.pi) - np.pi)
+    covers = off_axis <= ring.half_angle + np.pi / _BINS
+    order = np.argsort(~covers, axis=1, kind="stable")
+    relative = off_axis / ring.half_angle
+    certainty = 1 - (1 - spec.edge_certainty) * np.minimum(relative, 1.0) ** 2
+    reached = np.flatnonzero(distance <= ring.max_range + layout.radius)
+    robots = np.arange(_AT_ONCE)[:, None]
+    layers: list[_Layer] = []
+    for sensor in order.T:
+        covered = np.take_along_axis(covers, sensor[:, None], axis=1)[:, 0]
+        if not covered.any():
+            break
+        layers.append(
+            _Layer(
+                covered=None if covered.all() else covered,
+                sensor=sensor + first,
+                certainty=np.take_along_axis(certainty, sensor[:, None], axis=1)[:, 0],
+                place=None
+                if len(reached) == len(distance)
+                else (robots * len(distance) + reached).ravel(),
+                robot=np.repeat(robots * layout.count, len(reached)),
+                distance=np.tile(distance[reached], _AT_ONCE),
+            )
+        )
+    return layers
 
 
 def certainty_grid(
@@ -112,9 +147,8 @@ def certainty_grid(
     lead = np.shape(ranges)[:-1]
     readings = np.reshape(ranges, (-1, layout.count))
     headings = np.broadcast_to(np.asarray(heading, dtype=np.float64), lead).reshape(-1)
-    surfaces = np.full((len(readings), layout.count + 1), np.inf)  # the last: of no sensor
-    np.add(readings, layout.radius, out=surfaces[:, :-1], where=readings < tables.limit)
-    grids = np.empty((len(readings), spec.cells**2))
+    surfaces = np.where(readings < tables.limit, readings + layout.radius, np.inf)
+    grids = np.full((len(readings), spec.cells**2), np.inf)
     for first in range(0, len(readings), _AT_ONCE):
         part = slice(first, first + _AT_ONCE)
         _fill(grids[part], surfaces[part], headings[part], tables, spec)
@@ -124,21 +158,29 @@ def certainty_grid(
 def _fill(
     grids: FloatArray, surfaces: FloatArray, headings: FloatArray, tables: _Tables, spec: GridSpec
 ) -> None:
-    """Fill grids (n, cells**2), given how far each sensor's surface is (n, count + 1) [m]."""
+    """Fill grids (n, cells**2), given how far each sensor's surface is (n, count) [m]."""
     turn = headings[:, None] * (_BINS / (2 * np.pi))
-    bins = np.rint(tables.angle - turn).astype(np.intp)
-    np.remainder(bins, _BINS, out=bins)  # (n, cells**2)
-    sensor = tables.sensor.take(bins, axis=1)  # (K, n, cells**2)
-    sensor += np.arange(0, surfaces.size, surfaces.shape[1])[:, None]
-    # A ramp over half a cell, so that the grid changes smoothly with the readings.
-    ramp = surfaces.ravel().take(sensor)
-    np.subtract(tables.distance, ramp, out=ramp)
-    ramp *= 2 / spec.resolution
-    ramp += 1
-    np.minimum(np.maximum(ramp, 0, out=ramp), 1, out=ramp)
-    ramp *= tables.certainty.take(bins, axis=1)
-    np.copyto(ramp, np.inf, where=tables.distance > tables.reach.take(bins, axis=1))
-    # A cone tells of the nearest thing in it, so wherever one is empty nothing can be.
-    np.minimum.reduce(ramp, axis=0, out=grids)
+    bins = np.rint(tables.angle - turn).astype(np.intp).reshape(-1)  # they wrap around
+    flat = grids.reshape(-1)
+    for layer in tables.layers:
+        count = len(layer.robot) // _AT_ONCE * len(grids)
+        robot, distance = layer.robot[:count], layer.distance[:count]
+        place = None if layer.place is None else layer.place[:count]
+        near = bins if place is None else bins.take(place)
+        if layer.covered is not None:
+            chosen = np.flatnonzero(layer.covered.take(near, mode="wrap"))
+            place = chosen if place is None else place.take(chosen)
+            robot, distance, near = robot.take(chosen), distance.take(chosen), near.take(chosen)
+        # A ramp over half a cell, so that the grid changes smoothly with the readings.
+        ramp = distance - surfaces.take(layer.sensor.take(near, mode="wrap") + robot)
+        ramp *= 2 / spec.resolution
+        ramp += 1
+        np.minimum(np.maximum(ramp, 0, out=ramp), 1, out=ramp)
+        ramp *= layer.certainty.take(near, mode="wrap")
+        # A cone tells of the nearest thing in it, so wherever one is empty nothing can be.
+        if place is None:
+            np.minimum(ramp, flat, out=flat)
+        else:
+            flat[place] = np.minimum(ramp, flat.take(place), out=ramp)
     np.copyto(grids, spec.unseen, where=np.isinf(grids))
-    grids *= tables.outside
+    grids[:, tables.inside] = 0.0
