@@ -14,10 +14,10 @@ import numpy as np
 import nomad_mj
 from nomad_agents.benchmark.checks import Checks, until_mastered
 from nomad_agents.benchmark.conditions import find_condition
-from nomad_agents.benchmark.learners import Lesson, find_learner
 from nomad_agents.evaluation import Trial
 from nomad_agents.experiments.measures import assess, episode_rows
 from nomad_agents.experiments.runs import Result, Row, Run
+from nomad_agents.learners import Lesson, find_learner
 from nomad_mj.envs import PathFinding
 
 

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from rich.console import Console
 
-from nomad_agents.benchmark.learners import usual_agents
 from nomad_agents.benchmark.numbers import grouped
 from nomad_agents.benchmark.plan import Plan, plan_runs, require_extras
 from nomad_agents.benchmark.presentation import glances, group_tables, numbers, present
@@ -16,6 +15,7 @@ from nomad_agents.cli.common import console, interruptible, output_file, print_j
 from nomad_agents.cli.progress import run_progress
 from nomad_agents.experiments.runs import Result, do_runs, stored_result
 from nomad_agents.experiments.tables import as_rich
+from nomad_agents.learners import usual_agents
 from nomad_mj.envs import DEFAULT_ROBOT
 from nomad_mj.errors import ConfigError
 
