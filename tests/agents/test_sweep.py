@@ -4,22 +4,35 @@ import json
 import os
 import re
 import resource
+import secrets
+import shutil
 import signal
+import socket
 import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from nomad_agents.cli import sweep as command
 from nomad_agents.cli.main import main
 from nomad_agents.sweeps.ray_pool import has_ray
 
-GRID = ("agent=straight,planner", "range_noise=0.05,0.3", "--seeds", "2", "--starts", "1")
+# One that learns and one that does not, each soon done.
+GRID = (
+    *("agent=straight,reactive_planner", "range_noise=0.05,0.3", "robot=omnibot"),
+    *("max_passes=1", "episode_decisions=3", "test_decisions=1", "evaluate.max_decisions=2"),
+    *("--seeds", "2", "--starts", "1"),
+)
 COUNT = 8
 PROCESSES, RAY = "processes", "ray"
+HERE = ("--jobs", "1", "--backend", PROCESSES)
+needs_ray = pytest.mark.skipif(not has_ray(), reason="Ray is not installed: nomad-mj[sweep]")
 
 
 def table(out: Path) -> str:
@@ -43,14 +56,20 @@ def words(small_room: Path) -> list[str]:
 def whole(words: list[str], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the folder of a sweep that nothing disturbed."""
     out = tmp_path_factory.mktemp("whole")
-    assert main(["sweep", *words, "--out", str(out), "--jobs", "1", "--backend", PROCESSES]) == 0
+    assert main(["sweep", *words, "--out", str(out), *HERE]) == 0
     return out
 
 
-def start(words: list[str], out: Path, backend: str) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", "nomad_agents.cli.main", "sweep", *words, "--out", str(out)]
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draw no figures: it takes longer than the runs."""
+    monkeypatch.setattr(command, "draw", lambda *_: ([], 0))
+
+
+def start(words: list[str], out: Path, *how: str) -> subprocess.Popen[str]:
+    program = [sys.executable, "-m", "nomad_agents.cli.main", "sweep", *words, "--out", str(out)]
     return subprocess.Popen(
-        [*command, "--jobs", "1", "--backend", backend],
+        [*program, "--jobs", "1", "--metric", "spl", *how],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
@@ -98,12 +117,17 @@ def test_it_tells_what_it_has_found(
     held = pq.read_table(whole / "sweep.parquet")
     assert held.num_rows == COUNT and {"room", "range_noise", "seed"} <= set(held.column_names)
     assert all(seconds > 0 for seconds in held["machine_wall_s"].to_pylist())
-    assert len((whole / "sweep.md").read_text().splitlines()) == 2 + 2 + 4
+    for agent, learnt in zip(
+        held["agent"].to_pylist(), held["learn_decisions"].to_pylist(), strict=True
+    ):
+        assert learnt is None if agent == "straight" else 3 <= learnt <= 3 * 3
+    assert (whole / "sweep.md").read_text().count("\n") == 2 + 2 + 4
+    shown = ("success_rate", "spl", "learn_reactions")
     names = {path.name for path in whole.glob("sweep_*")}
-    assert names == {f"sweep_{m}.{s}" for m in ("success_rate", "spl") for s in ("pdf", "png")}
+    assert names == {f"sweep_{metric}.{suffix}" for metric in shown for suffix in ("pdf", "png")}
     before = (whole / "sweep.parquet").read_bytes(), (whole / "sweep_spl.png").read_bytes()
-    for more in (["--only-read"], [*words, "--jobs", "1", "--backend", PROCESSES]):
-        assert main(["sweep", *more, "--json", "--out", str(whole)]) == 0
+    for more in (["--only-read"], [*words, *HERE]):
+        assert main(["sweep", *more, "--metric", "spl", "--json", "--out", str(whole)]) == 0
         told = json.loads(capsys.readouterr().out)
         assert told["runs"] == told["of"] == COUNT and len(told["cells"]) == 4
     again = (whole / "sweep.parquet").read_bytes(), (whole / "sweep_spl.png").read_bytes()
@@ -112,13 +136,11 @@ def test_it_tells_what_it_has_found(
     assert "unknown metric 'joy'; there are: episodes, success_rate" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("backend", [PROCESSES, RAY])
+@pytest.mark.parametrize("backend", [PROCESSES, pytest.param(RAY, marks=needs_ray)])
 def test_with_workers_killed_twice_it_is_the_same(
     words: list[str], whole: Path, tmp_path: Path, backend: str
 ) -> None:
-    if backend == RAY and not has_ray():
-        pytest.skip("Ray is not installed")
-    process = start(words, tmp_path, backend)
+    process = start(words, tmp_path, "--backend", backend)
     kill_worker(process)
     until(lambda: done(tmp_path) >= 2, process)
     kill_worker(process)
@@ -127,31 +149,107 @@ def test_with_workers_killed_twice_it_is_the_same(
     assert table(tmp_path) == table(whole)
 
 
+def free_port() -> int:
+    with socket.socket() as found:
+        found.bind(("127.0.0.1", 0))
+        return found.getsockname()[1]
+
+
+@contextmanager
+def ray_head() -> Generator[str, None, None]:
+    """Yield the address of a cluster of one processor; end it, and nothing else of Ray."""
+    address, folder = f"127.0.0.1:{free_port()}", tempfile.mkdtemp(prefix="head-", dir="/tmp")
+    options = {
+        "node-ip-address": "127.0.0.1",
+        "port": address.partition(":")[2],
+        "ray-client-server-port": free_port(),
+        "num-cpus": 1,
+        "num-gpus": 0,
+        "object-store-memory": 80 * 2**20,
+        "include-dashboard": "false",
+        "temp-dir": folder,  # the path of a socket in it must be short
+    }
+    head = subprocess.Popen(
+        [
+            *(sys.executable, "-m", "ray.scripts.scripts", "start", "--head", "--block"),
+            *(f"--{name}={value}" for name, value in options.items()),
+            "--disable-usage-stats",
+        ],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    try:
+        assert head.stdout is not None
+        for line in head.stdout:
+            if "Ray runtime started" in line:
+                break
+        assert head.poll() is None
+        yield address
+    finally:
+        head.terminate()  # and with it, thanks to --block, all that it started
+        head.communicate(timeout=60)
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@needs_ray
+def test_on_a_cluster_it_is_the_same(
+    words: list[str], whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("RAY_AUTH_MODE", "token")
+    monkeypatch.setenv("RAY_AUTH_TOKEN", secrets.token_hex(32))
+    with ray_head() as address:
+        process = start(words, tmp_path, "--address", address)
+        said = process.communicate(timeout=180)[1]
+    assert process.returncode == 0, said
+    assert table(tmp_path) == table(whole)
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_without_ray_processes_do_it_and_ray_is_asked_for_in_one_line(
+    words: list[str],
+    whole: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setitem(sys.modules, "ray", None)
+    for how in (["--backend", RAY], ["--address", "auto"]):
+        assert main(["sweep", *words, *how, "--out", str(tmp_path)]) == 2
+        said = capsys.readouterr().err
+        assert said.endswith("need Ray: pip install 'nomad-mj[sweep]'\n")
+        assert said.count("\n") == 1 and not list(tmp_path.iterdir())
+    assert main(["sweep", *words, "--jobs", "2", "--out", str(tmp_path)]) == 0
+    assert table(tmp_path) == table(whole)
+
+
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
 def test_killed_as_a_whole_it_goes_on_to_the_same(
     words: list[str], whole: Path, tmp_path: Path, number: int
 ) -> None:
-    process = start(words, tmp_path, PROCESSES)
+    process = start(words, tmp_path, "--backend", PROCESSES)
     until(lambda: done(tmp_path) >= 2, process)
     process.send_signal(number)
     process.communicate(timeout=60)
     assert process.returncode in (130, -number)
     assert main(["sweep", "--only-read", "--out", str(tmp_path)]) == 0
     for _ in range(2):
-        words = [*words, "--out", str(tmp_path), "--backend", PROCESSES]
-        assert main(["sweep", *words]) == 0
+        assert main(["sweep", *words, "--out", str(tmp_path), *HERE]) == 0
         assert table(tmp_path) == table(whole)
 
 
-def test_a_full_disk_is_told_and_nothing_is_lost(words: list[str], tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "nomad_agents.cli.main", "sweep", *words]
-    ran = subprocess.run(
-        [*command, "--out", str(tmp_path), "--jobs", "1", "--backend", PROCESSES],
-        capture_output=True,
-        text=True,
-        check=False,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000)),
-    )
-    assert ran.returncode == 2 and "Traceback" not in ran.stderr
-    assert re.search(r"nomad-mj: cannot write '.*sweep.*': File too large\n$", ran.stderr)
+@pytest.mark.usefixtures("undrawn")
+def test_a_full_disk_is_told_and_nothing_is_lost(
+    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4000, limits[1]))
+    try:
+        code = main(["sweep", *words, "--out", str(tmp_path), *HERE])
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    said = capsys.readouterr().err
+    assert code == 2
+    assert re.search(r"nomad-mj: cannot write '.*sweep.*': File too large\n$", said)
     assert main(["sweep", "--only-read", "--out", str(tmp_path)]) == 0
