@@ -160,7 +160,6 @@ def ray_head() -> Generator[str, None, None]:
     """Yield the address of a cluster of one processor; end it, and nothing else of Ray."""
     address, folder = f"127.0.0.1:{free_port()}", tempfile.mkdtemp(prefix="head-", dir="/tmp")
     options = {
-        "node-ip-address": "127.0.0.1",
         "port": address.partition(":")[2],
         "ray-client-server-port": free_port(),
         "num-cpus": 1,
@@ -181,10 +180,13 @@ def ray_head() -> Generator[str, None, None]:
     )
     try:
         assert head.stdout is not None
+        said: list[str] = []
         for line in head.stdout:
+            said.append(line)
             if "Ray runtime started" in line:
                 break
-        assert head.poll() is None
+        else:
+            pytest.fail("".join(said))
         yield address
     finally:
         head.terminate()  # and with it, thanks to --block, all that it started
@@ -198,6 +200,8 @@ def test_on_a_cluster_it_is_the_same(
 ) -> None:
     monkeypatch.setenv("RAY_AUTH_MODE", "token")
     monkeypatch.setenv("RAY_AUTH_TOKEN", secrets.token_hex(32))
+    for patience in ("raylet_start_wait_time_s", "agent_register_timeout_ms"):
+        monkeypatch.setenv(f"RAY_{patience}", "300" if patience.endswith("_s") else "300000")
     with ray_head() as address:
         process = start(words, tmp_path, "--address", address)
         said = process.communicate(timeout=180)[1]
