@@ -10,7 +10,6 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 import shapely
-from scipy.stats import qmc
 
 from nomad_mj.arenas.floor_plan import FloorPlan
 from nomad_mj.errors import NomadError, StartError
@@ -67,6 +66,8 @@ def halton_starts(
         If the goal is blocked or the room has not so many such places.
     """
     low, high = np.reshape(plan.interior(0.0, goal).bounds, (2, 2))
+    from scipy.stats import qmc  # takes half a second, and few ask for it
+
     points = low + (high - low) * qmc.Halton(2, scramble=False).random(_MOST_POINTS)
     keep = shapely.contains_xy(plan.interior(radius, goal), points)
     keep &= plan.clearance(points, radius) > clearance

@@ -1,5 +1,6 @@
 """Sweeps over every agent: each comes to be in its own way, and is told its own options."""
 
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from nomad_agents.sweeps.grid import Grid, SweepRun, read_grid
 from nomad_agents.sweeps.options import catalogue
 from nomad_agents.sweeps.store import as_table
 from nomad_agents.sweeps.work import check_grid, do_run, sources
+from nomad_agents.training import Training
 
 import nomad_mj
 
@@ -46,10 +48,15 @@ def told(row: Row) -> Row:
     return {name: row[name] for name in names}
 
 
-def test_agents_that_learn_nothing_are_evaluated_and_told_their_settings(small_room: Path) -> None:
+def test_agents_that_learn_nothing_are_evaluated_and_told_their_settings(
+    small_room: Path, tmp_path: Path
+) -> None:
+    behind_the_box = tmp_path / "starts.csv"
+    behind_the_box.write_text("0,-0.5,1.5\n")
     names = [name for name, each in LEARNERS.items() if not each.learns]
-    words = [f"agent={','.join(names)}", "evaluate.max_decisions=6", "dwa.sight=2.0,0.01"]
-    grid = grid_of(small_room, *words, "vfh.goal=5.0,0.0", "potential.repulsion=0.03,9.0")
+    words = [f"agent={','.join(names)}", f"starts={behind_the_box}", "evaluate.max_decisions=6"]
+    own = ["dwa.heading=2.0,0.0", "vfh.goal=5.0,0.0", "potential.repulsion=0.03,9.0"]
+    grid = grid_of(small_room, *words, *own)
     check_grid(grid, lambda _: None)
     rows = done(grid)
     assert len(rows) == len(names) + 3 and {"straight", "random", "planner"} < set(names)
@@ -58,11 +65,11 @@ def test_agents_that_learn_nothing_are_evaluated_and_told_their_settings(small_r
         found[str(dict(run.cell)["agent"])].append(told(row))
         assert not any(name.startswith("learn_") for name in row)
     assert {name for name, each in found.items() if len(each) == 2} == {"vfh", "dwa", "potential"}
-    for name in ("vfh", "potential"):
+    for name in ("vfh", "dwa", "potential"):
         assert found[name][0] != found[name][1], name
     table = as_table(grid, rows)
-    sight = dict(zip(table["agent"].to_pylist(), table["dwa.sight"].to_pylist(), strict=True))
-    assert sight["vfh"] is None and sight["dwa"] == 0.01
+    heading = dict(zip(table["agent"].to_pylist(), table["dwa.heading"].to_pylist(), strict=True))
+    assert heading["vfh"] is None and heading["dwa"] == 0.0
 
 
 @pytest.mark.parametrize("name", DEEP)
@@ -82,18 +89,16 @@ def test_deep_learners_learn_from_their_budget_with_their_settings(
     for row in rows:
         assert row["learn_decisions"] == 12 and row["learn_sim_s"] > 5 and row["episodes"] == 1
         assert row["version_torch"] and row["version_stable-baselines3"]
-    assert told(rows[0]) != told(rows[1])
+    assert rows[0]["learn_sim_s"] != rows[1]["learn_sim_s"]
     again = do_run(sources(grid), grid.runs()[0])
     assert told(again) == told(rows[0]) and again["learn_sim_s"] == rows[0]["learn_sim_s"]
 
 
-def test_a_checkpoint_is_driven_beside_those_that_learn(
-    small_room: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_checkpoint_is_driven_beside_those_that_learn(small_room: Path, tmp_path: Path) -> None:
     path = tmp_path / "new.npz"
     with nomad_mj.load("path_finding", small_room, "omnibot") as env:
         agent = ReactivePlanner(env.scene.robot.layout, FAITHFUL)
-    save_checkpoint(path, agent, "small", "omnibot", {})
+    save_checkpoint(path, agent, "small", "omnibot", asdict(Training()) | {"seed": 0})
     grid = grid_of(small_room, f"agent={path},reactive_planner", "k_ind=0.02,0.1")
     assert sources(grid)["files"].keys() == {"small.xml", "omnibot.xml", "new.npz"}
     rows = done(grid)

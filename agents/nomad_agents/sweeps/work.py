@@ -1,7 +1,6 @@
 """What a run of a sweep does: let an agent learn, then evaluate it; and what is checked before."""
 
 import platform
-import time
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, closing, nullcontext
 from importlib.metadata import version
@@ -11,7 +10,7 @@ from typing import Any
 import nomad_mj
 from nomad_agents.evaluation import draw_starts, evaluate, read_starts, summarise
 from nomad_agents.experiments.measures import UNSEEN_SEED
-from nomad_agents.experiments.runs import PACKAGES, Row, describe_machine, digest
+from nomad_agents.experiments.runs import PACKAGES, Row, Stopwatch, describe_machine, digest
 from nomad_agents.learners import LEARNERS, Lesson
 from nomad_agents.registry import AGENTS, make_agent
 from nomad_agents.sweeps.grid import Cell, Grid, SweepRun, describe
@@ -46,7 +45,7 @@ def do_run(wanted: Row, run: SweepRun) -> Row:
     WorkerError
         What is wrong with its options, and which they are.
     """
-    began = time.perf_counter()
+    stopwatch = Stopwatch()
     try:
         settings = settle(dict(run.cell), run.seed)
         learner = settings.learner()
@@ -60,7 +59,7 @@ def do_run(wanted: Row, run: SweepRun) -> Row:
             row = dict(summarise(env, trials)) | row
     except NomadError as error:
         raise WorkerError(f"{run}: {error}") from None
-    machine = describe_machine(time.perf_counter() - began)
+    machine = describe_machine(stopwatch)
     packages = package_versions([settings.agent])
     versions = {f"{VERSIONS}{name}": value for name, value in packages.items()}
     return row | versions | {f"{MACHINE}{name}": value for name, value in machine.items()}
