@@ -25,6 +25,7 @@ from nomad_mj.errors import ConfigError
 from nomad_mj.values import read_yaml
 
 Cell = tuple[tuple[str, Value | None], ...]
+_Pick = tuple[int, Value | None]  # number of a value, and the value
 LARGEST = 1_000_000  # runs
 
 
@@ -90,21 +91,21 @@ class Grid:
         found.sort(key=lambda picks: [number for number, _ in picks])
         return [tuple(zip(names, (value for _, value in picks), strict=True)) for picks in found]
 
-    def _choices(self) -> list[list[list[tuple[int, Value | None]]]]:
+    def _choices(self) -> list[list[list[_Pick]]]:
         """Return, for each agent, the values of each option, with their numbers."""
-        known, agents = catalogue(), dict(self.axes).get(AGENT, ())
+        agents = dict(self.axes).get(AGENT, ())
         if not agents:
             return [[[*enumerate(values)] for _, values in self.axes]]
+        known = catalogue()
+
+        def picks(name: str, values: tuple[Value, ...], which: int) -> list[_Pick]:
+            if name == AGENT:
+                return [(which, values[which])]
+            return [*enumerate(values)] if _has(known, agents[which], name) else [(0, None)]
+
         return [
-            [
-                [(number, agent)]
-                if name == AGENT
-                else [*enumerate(values)]
-                if _has(known, agent, name)
-                else [(0, None)]
-                for name, values in self.axes
-            ]
-            for number, agent in enumerate(agents)
+            [picks(name, values, which) for name, values in self.axes]
+            for which in range(len(agents))
         ]
 
     def runs(self) -> list[SweepRun]:
