@@ -22,14 +22,15 @@ import pytest
 from nomad_agents.cli import sweep as command
 from nomad_agents.cli.main import main
 from nomad_agents.sweeps.ray_pool import has_ray
+from nomad_agents.sweeps.store import read_store
 
 # One that learns and one that does not, each soon done.
 GRID = (
-    *("agent=straight,reactive_planner", "range_noise=0.05,0.3", "robot=omnibot"),
+    *("agent=straight,reactive_planner", "range_noise=0.3", "robot=omnibot"),
     *("max_passes=1", "episode_decisions=3", "test_decisions=1", "evaluate.max_decisions=2"),
-    *("--seeds", "2", "--starts", "1"),
+    *("--seeds", "3", "--starts", "1"),
 )
-COUNT = 8
+COUNT = 6
 PROCESSES, RAY = "processes", "ray"
 HERE = ("--jobs", "1", "--backend", PROCESSES)
 needs_ray = pytest.mark.skipif(not has_ray(), reason="Ray is not installed: nomad-mj[sweep]")
@@ -54,9 +55,11 @@ def words(small_room: Path) -> list[str]:
 
 @pytest.fixture(scope="module")
 def whole(words: list[str], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the folder of a sweep that nothing disturbed."""
+    """Return the folder of a sweep that nothing disturbed, made where there is no Ray."""
     out = tmp_path_factory.mktemp("whole")
-    assert main(["sweep", *words, "--out", str(out), *HERE]) == 0
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setitem(sys.modules, "ray", None)
+        assert main(["sweep", *words, "--out", str(out), "--jobs", "1"]) == 0
     return out
 
 
@@ -66,10 +69,17 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(command, "draw", lambda *_: ([], 0))
 
 
+PROGRAM = """
+from nomad_agents.cli import main, sweep
+sweep.draw = lambda *_: ([], 0)
+raise SystemExit(main.main())
+"""
+
+
 def start(words: list[str], out: Path, *how: str) -> subprocess.Popen[str]:
-    program = [sys.executable, "-m", "nomad_agents.cli.main", "sweep", *words, "--out", str(out)]
+    program = [sys.executable, "-c", PROGRAM, "sweep", *words, "--out", str(out)]
     return subprocess.Popen(
-        [*program, "--jobs", "1", "--metric", "spl", *how],
+        [*program, "--jobs", "1", *how],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
@@ -78,11 +88,11 @@ def start(words: list[str], out: Path, *how: str) -> subprocess.Popen[str]:
     )
 
 
-def until(so: Callable[[], bool], process: subprocess.Popen[str]) -> None:
+def until(so: Callable[[], bool], process: subprocess.Popen[str], pause: float = 0.02) -> None:
     began = time.monotonic()
     while not so():
         assert time.monotonic() - began < 120 and process.poll() is None
-        time.sleep(0.01)
+        time.sleep(pause)
 
 
 def workers(process: subprocess.Popen[str]) -> list[int]:
@@ -107,7 +117,7 @@ def workers(process: subprocess.Popen[str]) -> list[int]:
 
 
 def kill_worker(process: subprocess.Popen[str]) -> None:
-    until(lambda: bool(workers(process)), process)
+    until(lambda: bool(workers(process)), process, pause=0.2)  # to look takes long
     os.kill(workers(process)[0], signal.SIGKILL)
 
 
@@ -121,7 +131,7 @@ def test_it_tells_what_it_has_found(
         held["agent"].to_pylist(), held["learn_decisions"].to_pylist(), strict=True
     ):
         assert learnt is None if agent == "straight" else 3 <= learnt <= 3 * 3
-    assert (whole / "sweep.md").read_text().count("\n") == 2 + 2 + 4
+    assert (whole / "sweep.md").read_text().count("\n") == 2 + 2 + 2
     shown = ("success_rate", "spl", "learn_reactions")
     names = {path.name for path in whole.glob("sweep_*")}
     assert names == {f"sweep_{metric}.{suffix}" for metric in shown for suffix in ("pdf", "png")}
@@ -129,7 +139,7 @@ def test_it_tells_what_it_has_found(
     for more in (["--only-read"], [*words, *HERE]):
         assert main(["sweep", *more, "--metric", "spl", "--json", "--out", str(whole)]) == 0
         told = json.loads(capsys.readouterr().out)
-        assert told["runs"] == told["of"] == COUNT and len(told["cells"]) == 4
+        assert told["runs"] == told["of"] == COUNT and len(told["cells"]) == 2
     again = (whole / "sweep.parquet").read_bytes(), (whole / "sweep_spl.png").read_bytes()
     assert again == before
     assert main(["sweep", "--only-read", "--metric", "joy", "--out", str(whole)]) == 2
@@ -142,7 +152,7 @@ def test_with_workers_killed_twice_it_is_the_same(
 ) -> None:
     process = start(words, tmp_path, "--backend", backend)
     kill_worker(process)
-    until(lambda: done(tmp_path) >= 2, process)
+    until(lambda: done(tmp_path) >= 1, process)
     kill_worker(process)
     assert process.wait(timeout=180) == 0, process.communicate()[1]
     process.communicate()
@@ -209,8 +219,7 @@ def test_on_a_cluster_it_is_the_same(
     assert table(tmp_path) == table(whole)
 
 
-@pytest.mark.usefixtures("undrawn")
-def test_without_ray_processes_do_it_and_ray_is_asked_for_in_one_line(
+def test_without_ray_it_is_asked_for_in_one_line(
     words: list[str],
     whole: Path,
     tmp_path: Path,
@@ -223,21 +232,24 @@ def test_without_ray_processes_do_it_and_ray_is_asked_for_in_one_line(
         said = capsys.readouterr().err
         assert said.endswith("need Ray: pip install 'nomad-mj[sweep]'\n")
         assert said.count("\n") == 1 and not list(tmp_path.iterdir())
-    assert main(["sweep", *words, "--jobs", "2", "--out", str(tmp_path)]) == 0
-    assert table(tmp_path) == table(whole)
+    assert pq.read_table(whole / "sweep.parquet").num_rows == COUNT  # by processes
 
 
 @pytest.mark.usefixtures("undrawn")
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
 def test_killed_as_a_whole_it_goes_on_to_the_same(
-    words: list[str], whole: Path, tmp_path: Path, number: int
+    words: list[str], whole: Path, tmp_path: Path
 ) -> None:
-    process = start(words, tmp_path, "--backend", PROCESSES)
-    until(lambda: done(tmp_path) >= 2, process)
-    process.send_signal(number)
-    process.communicate(timeout=60)
-    assert process.returncode in (130, -number)
-    assert main(["sweep", "--only-read", "--out", str(tmp_path)]) == 0
+    held = 0
+    for number in (signal.SIGKILL, signal.SIGINT):
+        process = start(words, tmp_path, "--backend", PROCESSES)
+        until(lambda: done(tmp_path) >= 1, process)
+        process.send_signal(number)
+        process.communicate(timeout=60)
+        assert process.returncode in (130, -number)
+        assert main(["sweep", "--only-read", "--out", str(tmp_path)]) == 0
+        store = read_store(tmp_path)
+        assert store is not None and held < len(store.rows) < COUNT
+        held = len(store.rows)
     for _ in range(2):
         assert main(["sweep", *words, "--out", str(tmp_path), *HERE]) == 0
         assert table(tmp_path) == table(whole)

@@ -55,7 +55,7 @@ def test_agents_that_learn_nothing_are_evaluated_and_told_their_settings(
     behind_the_box.write_text("0,-0.5,1.5\n")
     names = [name for name, each in LEARNERS.items() if not each.learns]
     words = [f"agent={','.join(names)}", f"starts={behind_the_box}", "evaluate.max_decisions=6"]
-    own = ["dwa.heading=2.0,0.0", "vfh.goal=5.0,0.0", "potential.repulsion=0.03,9.0"]
+    own = ["dwa.heading=2.0,0.0", "vfh.safety=0.15,0.45", "potential.repulsion=0.03,9.0"]
     grid = grid_of(small_room, *words, *own)
     check_grid(grid, lambda _: None)
     rows = done(grid)
@@ -84,14 +84,11 @@ def test_deep_learners_learn_from_their_budget_with_their_settings(
         "observation=ranges",
         "decisions=12",
     )
-    check_grid(grid, lambda _: None)
     rows = list(done(grid).values())
     for row in rows:
         assert row["learn_decisions"] == 12 and row["learn_sim_s"] > 5 and row["episodes"] == 1
         assert row["version_torch"] and row["version_stable-baselines3"]
     assert rows[0]["learn_sim_s"] != rows[1]["learn_sim_s"]
-    again = do_run(sources(grid), grid.runs()[0])
-    assert told(again) == told(rows[0]) and again["learn_sim_s"] == rows[0]["learn_sim_s"]
 
 
 def test_a_checkpoint_is_driven_beside_those_that_learn(small_room: Path, tmp_path: Path) -> None:
