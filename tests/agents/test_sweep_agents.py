@@ -55,7 +55,7 @@ def test_agents_that_learn_nothing_are_evaluated_and_told_their_settings(
     behind_the_box.write_text("0,-0.5,1.5\n")
     names = [name for name, each in LEARNERS.items() if not each.learns]
     words = [f"agent={','.join(names)}", f"starts={behind_the_box}", "evaluate.max_decisions=6"]
-    own = ["dwa.heading=2.0,0.0", "vfh.safety=0.15,0.45", "potential.repulsion=0.03,9.0"]
+    own = ["dwa.heading=2.0,0.0", "vfh.safety=0.15,0.45", "potential.repulsion=0.03,0.001"]
     grid = grid_of(small_room, *words, *own)
     check_grid(grid, lambda _: None)
     rows = done(grid)
