@@ -66,7 +66,11 @@ def whole(words: list[str], tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw no figures: it takes longer than the runs."""
-    monkeypatch.setattr(command, "draw", lambda *_: ([], 0))
+
+    def none(*_: object) -> tuple[list[Path], int]:
+        return [], 0
+
+    monkeypatch.setattr(command, "draw", none)
 
 
 PROGRAM = """
