@@ -9,7 +9,6 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 import numpy.typing as npt
-import shapely
 from scipy.stats import qmc
 
 from nomad_mj.arenas.floor_plan import FloorPlan
@@ -68,16 +67,15 @@ def halton_starts(
     """
     low, high = np.reshape(plan.interior(0.0, goal).bounds, (2, 2))
     points = low + (high - low) * qmc.Halton(2, scramble=False).random(_MOST_POINTS)
-    keep = shapely.contains_xy(plan.interior(radius, goal), points)
-    keep &= plan.clearance(points, radius) > clearance
-    keep &= np.linalg.norm(points - np.asarray(goal), axis=-1) >= min_goal_distance
+    region = plan.interior(radius, goal)
+    starts = points[plan.suit(points, region, radius, clearance, goal, min_goal_distance)]
     needed = n if fewest is None else fewest
-    if keep.sum() < needed:
+    if len(starts) < needed:
         raise StartError(
-            f"the room has only {keep.sum()} of {needed} starts {clearance:g} m clear of "
+            f"the room has only {len(starts)} of {needed} starts {clearance:g} m clear of "
             f"everything and {min_goal_distance:g} m from the goal; ask for fewer, or make room"
         )
-    return points[keep][:n]
+    return starts[:n]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
