@@ -107,6 +107,18 @@ def _read(kind: str, path: Path) -> mujoco.MjSpec:
     return spec
 
 
+def _read_robot(
+    path: Path, rays_per_cone: int | None, specular_rings: Sequence[str]
+) -> mujoco.MjSpec:
+    """Return a robot with the rays that the options ask for."""
+    spec = _read("robot", path)
+    adopt(spec, read_sheet(path), path.stem)
+    if rays_per_cone is not None:
+        set_rays_per_cone(spec, rays_per_cone)
+    report_surfaces(spec, specular_rings)
+    return spec
+
+
 def _sample_per_control_step(spec: mujoco.MjSpec, sub_steps: int) -> None:
     """Let rays be cast once a control step and fast sensors keep a history of it."""
     for sensor in spec.sensors:
@@ -200,11 +212,8 @@ def build_scene(
     """
     _check_configs(moving_goal, moving_obstacles)
     room_path, robot_path = find_room(room), find_robot(robot)
-    room_spec, robot_spec = _read("room", room_path), _read("robot", robot_path)
-    adopt(robot_spec, read_sheet(robot_path), robot_path.stem)
-    if rays_per_cone is not None:
-        set_rays_per_cone(robot_spec, rays_per_cone)
-    report_surfaces(robot_spec, specular_rings)
+    room_spec = _read("room", room_path)
+    robot_spec = _read_robot(robot_path, rays_per_cone, specular_rings)
     if goal is not None or moving_goal is not None:
         place_goal(room_spec, goal, moving_goal is not None)
     added = add_obstacles(room_spec, moving_obstacles) if moving_obstacles else ()
