@@ -45,14 +45,8 @@ def halton_starts(
         The room.
     n : int
         How many.
-    goal : array_like, shape (2,)
-        The goal, world frame [m].
-    radius : float
-        Radius of the robot [m].
-    clearance : float
-        Its perimeter is farther than this from everything [m].
-    min_goal_distance : float
-        Its centre is at least this far from the goal, in a straight line [m].
+    goal, radius, clearance, min_goal_distance
+        As of `FloorPlan.sample_free`.
     fewest : int, optional
         So many are enough where the room has no more; `n` by default.
 
