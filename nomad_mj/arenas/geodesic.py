@@ -3,8 +3,6 @@
 import numpy as np
 import numpy.typing as npt
 import shapely
-from scipy import sparse
-from scipy.sparse import csgraph
 from shapely.geometry.polygon import orient
 
 from nomad_mj.arenas.floor_plan import FloorPlan
@@ -94,6 +92,10 @@ class Geodesic:
 
     def _to_goal(self) -> tuple[FloatArray, IntArray]:
         """Distance of every corner, then the goal, to the goal, and the node that comes next."""
+        # Here, and not above: to import it takes as long as all the rest of nomad_mj.
+        from scipy import sparse
+        from scipy.sparse import csgraph
+
         count = len(self._corners)
         source, target = self._pairs()
         at_goal = np.flatnonzero(self._tangent(self.goal[None])[0])

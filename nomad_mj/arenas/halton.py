@@ -9,7 +9,6 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import qmc
 
 from nomad_mj.arenas.floor_plan import FloorPlan
 from nomad_mj.errors import NomadError, StartError
@@ -60,6 +59,8 @@ def halton_starts(
         If the goal is blocked or the room has not so many such places.
     """
     low, high = np.reshape(plan.interior(0.0, goal).bounds, (2, 2))
+    from scipy.stats import qmc  # takes half a second, and few ask for it
+
     points = low + (high - low) * qmc.Halton(2, scramble=False).random(_MOST_POINTS)
     region = plan.interior(radius, goal)
     starts = points[plan.suit(points, region, radius, clearance, goal, min_goal_distance)]

@@ -3,39 +3,26 @@
 import os
 import sys
 from collections.abc import Sequence
-from typing import Any
 
-from nomad_agents.cli.bench import Bench
-from nomad_agents.cli.benchmark import Benchmark
-from nomad_agents.cli.check import Check
 from nomad_agents.cli.common import fail
-from nomad_agents.cli.demo import Demo
-from nomad_agents.cli.evaluate import Evaluate
-from nomad_agents.cli.export import Export
-from nomad_agents.cli.listing import List
 from nomad_agents.cli.parsing import parse
-from nomad_agents.cli.record import Record
-from nomad_agents.cli.reproduce import Reproduce
-from nomad_agents.cli.room import MakeRoom
-from nomad_agents.cli.sweep import Sweep
-from nomad_agents.cli.train import Train
-from nomad_agents.cli.view import View
 from nomad_mj.errors import NomadError
 
-COMMANDS: dict[str, type[Any]] = {
-    "train": Train,
-    "evaluate": Evaluate,
-    "record": Record,
-    "export": Export,
-    "view": View,
-    "reproduce": Reproduce,
-    "sweep": Sweep,
-    "benchmark": Benchmark,
-    "room": MakeRoom,
-    "check": Check,
-    "list": List,
-    "bench": Bench,
-    "demo": Demo,
+# Where each is: only the one that is typed is imported, which all together take seconds.
+COMMANDS: dict[str, str] = {
+    "train": "nomad_agents.cli.train:Train",
+    "evaluate": "nomad_agents.cli.evaluate:Evaluate",
+    "record": "nomad_agents.cli.record:Record",
+    "export": "nomad_agents.cli.export:Export",
+    "view": "nomad_agents.cli.view:View",
+    "reproduce": "nomad_agents.cli.reproduce:Reproduce",
+    "sweep": "nomad_agents.cli.sweep:Sweep",
+    "benchmark": "nomad_agents.cli.benchmark:Benchmark",
+    "room": "nomad_agents.cli.room:MakeRoom",
+    "check": "nomad_agents.cli.check:Check",
+    "list": "nomad_agents.cli.listing:List",
+    "bench": "nomad_agents.cli.bench:Bench",
+    "demo": "nomad_agents.cli.demo:Demo",
 }
 
 

@@ -4,6 +4,7 @@ import contextlib
 import difflib
 import io
 import operator
+import pkgutil
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
@@ -21,13 +22,13 @@ _SIDE = "\u2502"
 _NUMBERS = {"INT": "a whole number", "FLOAT": "a number"}
 
 
-def parse(commands: Mapping[str, type[Any]], about: str, arguments: Sequence[str]) -> Any:
+def parse(commands: Mapping[str, str], about: str, arguments: Sequence[str]) -> Any:
     """Return the command that the arguments ask for, with its options.
 
     Parameters
     ----------
-    commands : mapping of str to dataclass
-        The commands by name.
+    commands : mapping of str to str
+        The commands by name: ``module:class`` of a dataclass.
     about : str
         What the program is, for its help.
     arguments : sequence of str
@@ -48,16 +49,18 @@ def parse(commands: Mapping[str, type[Any]], about: str, arguments: Sequence[str
         raise ConfigError(f"the command must come first, one of: {', '.join(commands)}")
     if not asks and first not in commands:
         raise UnknownNameError("command", first, commands)
-    known = (Annotated[cls, tyro.conf.subcommand(name)] for name, cls in commands.items())
-    union: Any = reduce(operator.or_, known)
+    wanted = commands if asks else {first: commands[first]}
+    known = {name: pkgutil.resolve_name(where) for name, where in wanted.items()}
+    shown = (Annotated[cls, tyro.conf.subcommand(name)] for name, cls in known.items())
+    union: Any = reduce(operator.or_, shown) if asks else known[first]
     complaint = io.StringIO()
     try:
         with contextlib.redirect_stderr(complaint):
             command, unknown = tyro.cli(
                 union,
-                prog="nomad-mj",
-                description=about,
-                args=arguments,
+                prog="nomad-mj" if asks else f"nomad-mj {first}",
+                description=about if asks else None,
+                args=arguments if asks else arguments[1:],
                 return_unknown_args=True,
                 config=(tyro.conf.FlagCreatePairsOff,),
             )
@@ -66,7 +69,7 @@ def parse(commands: Mapping[str, type[Any]], about: str, arguments: Sequence[str
             raise
         raise ConfigError(f"{first}: {_one_line(complaint.getvalue())}") from None
     if unknown:
-        raise _unknown_argument(first, commands[first], unknown[0])
+        raise _unknown_argument(first, known[first], unknown[0])
     return command
 
 

@@ -1,7 +1,6 @@
 """What a run of a sweep does: train an agent, then evaluate it; and what is checked before."""
 
 import platform
-import time
 from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
@@ -10,7 +9,7 @@ from nomad_agents.agent import Agent
 from nomad_agents.evaluation import draw_starts, evaluate, read_starts, summarise
 from nomad_agents.experiments.learnt import learn
 from nomad_agents.experiments.measures import UNSEEN_SEED
-from nomad_agents.experiments.runs import PACKAGES, Row, describe_machine, digest
+from nomad_agents.experiments.runs import PACKAGES, Row, Stopwatch, describe_machine, digest
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.registry import AGENTS, find_agent
 from nomad_agents.sweeps.grid import Cell, Grid, SweepRun, describe
@@ -43,7 +42,7 @@ def do_run(wanted: Row, run: SweepRun) -> Row:
     WorkerError
         What is wrong with its options, and which they are.
     """
-    began = time.perf_counter()
+    stopwatch = Stopwatch()
     try:
         _require_same(wanted, run)
         settings = settle(dict(run.cell), run.seed)
@@ -55,7 +54,7 @@ def do_run(wanted: Row, run: SweepRun) -> Row:
             row = dict(summarise(env, trials)) | row
     except NomadError as error:
         raise WorkerError(f"{run}: {error}") from None
-    machine = describe_machine(time.perf_counter() - began)
+    machine = describe_machine(stopwatch)
     versions = {f"{VERSIONS}{name}": value for name, value in package_versions().items()}
     return row | versions | {f"{MACHINE}{name}": value for name, value in machine.items()}
 
