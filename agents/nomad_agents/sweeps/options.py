@@ -95,6 +95,7 @@ def catalogue() -> Mapping[str, Option]:
     config = [
         Option(n, "config", k, v, _who_reads(n))
         for n, k, v in _leaves(ReactivePlannerConfig, usual)
+        if not n.startswith("action.")  # the environment has its own idea of how long a move is
     ]
     settings = {**SETTINGS, **{name: made() for name, made in DEEP.items()}}
     own = [
@@ -121,7 +122,7 @@ def _of_runs() -> list[Option]:
 def _who_reads(name: str) -> tuple[str, ...]:
     """Return the agents that a field of the configuration makes a difference to."""
     part = name.partition(".")[0]
-    if part in ("situation", "action"):
+    if part == "situation":
         return tuple(agent for agent in AGENTS if agent not in _BLIND)
     return (USUAL_AGENT, Planner.name) if part == "planner" else (USUAL_AGENT,)
 
