@@ -21,7 +21,9 @@ SOURCES = {"packages": {"mujoco": "3"}, "files": {"a.xml": "digest"}}
 def row(run: SweepRun) -> dict[str, object]:
     """Return made-up numbers; only some runs have learnt."""
     cell = dict(run.cell)
-    made: dict[str, object] = {"spl": float(cell["k_ind"]) / 3 + run.seed, "none": float("nan")}
+    k_ind = cell["k_ind"]
+    assert isinstance(k_ind, float)
+    made: dict[str, object] = {"spl": k_ind / 3 + run.seed, "none": float("nan")}
     if cell["room"] == "b":
         made["learn_reactions"] = 7 * run.seed
     return made | {"machine_wall_s": 0.5}
