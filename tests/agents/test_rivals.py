@@ -171,6 +171,23 @@ def test_a_box_ahead_is_passed_on_the_shorter_side() -> None:
         assert MAKERS[name]().act(percept, None).action[1] < 0, name
 
 
+def test_along_a_wall_the_virtual_force_field_keeps_its_distance_and_gets_round() -> None:
+    """Not a degree towards the wall at each move: the push of the wall must hold it off."""
+    agent, goal = MAKERS["potential"](), np.array([0.3, 4.0])
+    place = np.zeros(2)
+    for _ in range(60):
+        to_goal = goal - place
+        x, y = CENTRES[..., 0] + place[0], CENTRES[..., 1] + place[1]
+        wall = ((abs(x) < 2.5) & (y > 1.0) & (y < 1.4)).astype(np.float64)
+        move = move_of(agent, Percept(np.zeros(26), wall, to_goal))
+        place = place + move
+        inside = np.clip(place, [-2.5, 1.0], [2.5, 1.4])
+        assert np.hypot(*(place - inside)) > LAYOUT.radius + 0.1, place
+        if np.hypot(*(goal - place)) < 0.2:
+            return
+    raise AssertionError(f"still at {place}")
+
+
 def test_blocked_sectors_stay_blocked_between_the_thresholds() -> None:
     agent = VectorFieldHistogram(LAYOUT, FAITHFUL, VfhConfig(low=0.1, high=0.6))
     certain = Percept(np.zeros(26), np.zeros((21, 21)), np.array([4.0, 0.0]))
