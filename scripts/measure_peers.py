@@ -6,7 +6,7 @@
 
 One environment, random actions, no rendering; simulated time by each simulator's own clock. Ours is
 timed in turn with each peer, block by block, so that what else the machine does falls on both; a
-ratio is the median over such pairs. A peer that cannot be installed or run is named with the reason.
+ratio is the median over such pairs. A peer that cannot be installed or run is told as such.
 """
 
 import json
