@@ -10,8 +10,8 @@ import pytest
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 sys.path.append(str(SCRIPTS))
 
-from measure_peers import as_json, compare, markdown, update  # noqa: E402
-from peer_environments import Block, Peer, PeerError, install, reason, running  # noqa: E402
+from measure_peers import as_json, compare, markdown, update  # noqa: E402 # pyright: ignore[reportMissingImports]
+from peer_environments import Block, Peer, PeerError, install, reason, running  # noqa: E402 # pyright: ignore[reportMissingImports]
 
 from nomad_mj.errors import ConfigError  # noqa: E402
 
