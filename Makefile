@@ -19,7 +19,7 @@ demo: setup ## learn the paper's room, then print the table and draw the figures
 	@$(bin)/nomad-mj demo $(ARGS)
 
 test: extras ## run the tests (ARGS="tests/test_gl.py -k egl" for some of them)
-	@$(bin)/python -m pytest -n auto --maxprocesses 4 $(ARGS)
+	@$(bin)/python -m pytest -n auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 bench: extras ## measure the speed, as ratios to bare MuJoCo
 	@$(bin)/nomad-mj bench $(ARGS)

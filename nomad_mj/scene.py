@@ -107,6 +107,18 @@ def _read(kind: str, path: Path) -> mujoco.MjSpec:
     return spec
 
 
+def _read_robot(
+    path: Path, rays_per_cone: int | None, specular_rings: Sequence[str]
+) -> mujoco.MjSpec:
+    """Return a robot with the rays that the options ask for."""
+    spec = _read("robot", path)
+    adopt(spec, read_sheet(path), path.stem)
+    if rays_per_cone is not None:
+        set_rays_per_cone(spec, rays_per_cone)
+    report_surfaces(spec, specular_rings)
+    return spec
+
+
 def _sample_per_control_step(spec: mujoco.MjSpec, sub_steps: int) -> None:
     """Let rays be cast once a control step and fast sensors keep a history of it."""
     for sensor in spec.sensors:
@@ -119,14 +131,26 @@ def _sample_per_control_step(spec: mujoco.MjSpec, sub_steps: int) -> None:
             sensor.nsample = sub_steps - 1  # all but the last, which is in sensordata itself
 
 
-def _join(room: mujoco.MjSpec, robot: mujoco.MjSpec) -> tuple[mujoco.MjSpec, mujoco.MjModel]:
-    """Return both in the shared scene, sensors sampling once a control step, and their model."""
-    spec = mujoco.MjSpec.from_file(str(models_dir() / "scene.xml"))
-    with _quietly():  # scene.xml owns the options: a file's own serve only where it is opened alone
-        spec.attach(room, prefix=ROOM_PREFIX, frame=spec.worldbody.add_frame())
-        spec.attach(robot, prefix=PREFIX, frame=spec.worldbody.add_frame())
-        _sample_per_control_step(spec, round(CONTROL_TIMESTEP / spec.option.timestep))
-        model = spec.compile()
+def _join(
+    room: mujoco.MjSpec, robot: mujoco.MjSpec, both: str
+) -> tuple[mujoco.MjSpec, mujoco.MjModel]:
+    """Return both in the shared scene, sensors sampling once a control step, and their model.
+
+    Raises
+    ------
+    ModelError
+        They do not fit together, in a line that begins with what `both` are.
+    """
+    try:
+        spec = mujoco.MjSpec.from_file(str(models_dir() / "scene.xml"))
+        with _quietly():  # scene.xml owns the options: a file's own serve only where it is alone
+            spec.attach(room, prefix=ROOM_PREFIX, frame=spec.worldbody.add_frame())
+            spec.attach(robot, prefix=PREFIX, frame=spec.worldbody.add_frame())
+            _sample_per_control_step(spec, round(CONTROL_TIMESTEP / spec.option.timestep))
+            model = spec.compile()
+    except (ValueError, RuntimeError) as error:
+        reason = " ".join(str(error).split())
+        raise ModelError(f"{both} do not fit together: {reason}") from None
     _time_rays(model)
     return spec, model
 
@@ -200,21 +224,12 @@ def build_scene(
     """
     _check_configs(moving_goal, moving_obstacles)
     room_path, robot_path = find_room(room), find_robot(robot)
-    room_spec, robot_spec = _read("room", room_path), _read("robot", robot_path)
-    adopt(robot_spec, read_sheet(robot_path), robot_path.stem)
-    if rays_per_cone is not None:
-        set_rays_per_cone(robot_spec, rays_per_cone)
-    report_surfaces(robot_spec, specular_rings)
+    room_spec = _read("room", room_path)
+    robot_spec = _read_robot(robot_path, rays_per_cone, specular_rings)
     if goal is not None or moving_goal is not None:
         place_goal(room_spec, goal, moving_goal is not None)
     added = add_obstacles(room_spec, moving_obstacles) if moving_obstacles else ()
-    try:
-        spec, model = _join(room_spec, robot_spec)
-    except (ValueError, RuntimeError) as error:
-        reason = " ".join(str(error).split())
-        raise ModelError(
-            f"room {str(room)!r} and robot {str(robot)!r} do not fit together: {reason}"
-        ) from None
+    spec, model = _join(room_spec, robot_spec, f"room {str(room)!r} and robot {str(robot)!r}")
     description = describe_robot(model, robot_path.stem)
     unclip_surfaces(model)
     arena = Arena.from_model(model, room_path.stem)

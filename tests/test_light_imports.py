@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-HEAVY = ("gymnasium", "matplotlib", "pyarrow", "ray", "scipy", "torch")
+HEAVY: tuple[str, ...] = ("gymnasium", "matplotlib", "pyarrow", "ray", "scipy", "torch")
 
 
 def imported(statement: str) -> set[str]:

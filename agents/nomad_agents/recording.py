@@ -66,6 +66,13 @@ def _narrator(
     return watch
 
 
+def _outcome(episode: Episode) -> tuple[str, str]:
+    """Return what came of an episode, and what it took."""
+    reached = "goal reached" if episode.reached else "goal not reached"
+    took = f"{episode.decisions} decisions, {episode.driven:.1f} m, {episode.duration:.0f} s"
+    return reached, took
+
+
 def record(
     env: PathFinding,
     agent: Agent,
@@ -113,6 +120,7 @@ def record(
         for i, stream in enumerate(np.random.SeedSequence(seed).spawn(count)):
             numbered = f"start {i + 1} of {count}" if count > 1 else ""
             lines = title, ", ".join(filter(None, (subtitle, numbered)))
+            watch = _narrator(recorder, env, agent, lines, pauses[0])
             episode = run_episode(
                 env,
                 agent,
@@ -120,13 +128,9 @@ def record(
                 start=starts[i],
                 explore=explore,
                 max_decisions=max_decisions,
-                watch=_narrator(recorder, env, agent, lines, pauses[0]),
+                watch=watch,
             )
             episodes.append(episode)
-            outcome = "goal reached" if episode.reached else "goal not reached"
-            told = (
-                f"{episode.decisions} decisions, {episode.driven:.1f} m, {episode.duration:.0f} s"
-            )
-            recorder.hold(pauses[1], outcome, told)
+            recorder.hold(pauses[1], *_outcome(episode))
         frames = recorder.frames
     return Recording(Path(path), frames, frames / fps, tuple(episodes))

@@ -1,16 +1,20 @@
 """Agents by name, and configurations by name."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 from nomad_agents.agent import Agent
 from nomad_agents.baselines import (
+    DwaConfig,
     DynamicWindow,
     Planner,
+    PotentialConfig,
     PotentialField,
     RandomMoves,
     Straight,
     VectorFieldHistogram,
+    VfhConfig,
 )
 from nomad_agents.checkpoint import checkpoint_of, read_npz
 from nomad_agents.deep import LEARNERS
@@ -19,7 +23,7 @@ from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner, ReactivePlan
 from nomad_mj.errors import CheckpointError, ConfigError, UnknownNameError
 from nomad_mj.types import SensorLayout
 
-AGENTS: dict[str, Callable[[SensorLayout, ReactivePlannerConfig], Agent]] = {
+AGENTS: dict[str, Callable[..., Agent]] = {
     ReactivePlanner.name: ReactivePlanner,
     Planner.name: Planner,
     Straight.name: Straight,
@@ -27,6 +31,12 @@ AGENTS: dict[str, Callable[[SensorLayout, ReactivePlannerConfig], Agent]] = {
     VectorFieldHistogram.name: VectorFieldHistogram,
     PotentialField.name: PotentialField,
     DynamicWindow.name: DynamicWindow,
+}
+# What some are told beside a configuration, as a third argument, and what is usual.
+SETTINGS: Mapping[str, Any] = {
+    VectorFieldHistogram.name: VfhConfig(),
+    PotentialField.name: PotentialConfig(),
+    DynamicWindow.name: DwaConfig(),
 }
 
 
@@ -37,11 +47,16 @@ def find_config(name: str) -> ReactivePlannerConfig:
     return CONFIGS[name]
 
 
-def make_agent(name: str, layout: SensorLayout, config: ReactivePlannerConfig) -> Agent:
-    """Return a new agent that has learnt nothing; raise UnknownNameError for an unknown name."""
+def make_agent(
+    name: str, layout: SensorLayout, config: ReactivePlannerConfig, own: object = None
+) -> Agent:
+    """Return a new agent that has learnt nothing; raise UnknownNameError for an unknown name.
+
+    `own` takes the place of its entry in `SETTINGS`.
+    """
     if name not in AGENTS:
         raise UnknownNameError("agent", name, AGENTS)
-    return AGENTS[name](layout, config)
+    return AGENTS[name](layout, config) if own is None else AGENTS[name](layout, config, own)
 
 
 def find_agent(name_or_path: str, layout: SensorLayout, config: ReactivePlannerConfig) -> Agent:

@@ -218,22 +218,32 @@ class FloorPlan:
         region = self.interior(radius, goal)
         shapely.prepare(region)
         low, high = np.reshape(region.bounds, (2, 2))
-        target = np.asarray(goal, dtype=np.float64)
-        found: list[FloatArray] = []
-        count = 0
+        found = np.zeros((0, 2))
         for _ in range(_MOST_BATCHES):
-            if count >= n:
+            if len(found) >= n:
                 break
             drawn = rng.uniform(low, high, size=(_BATCH, 2))
-            keep = shapely.contains_xy(region, drawn)
-            keep &= np.linalg.norm(drawn - target, axis=-1) >= min_goal_distance
-            keep &= self.clearance(drawn, radius) > clearance
-            found.append(drawn[keep])
-            count += int(keep.sum())
-        if count < n:
+            kept = self.suit(drawn, region, radius, clearance, goal, min_goal_distance)
+            found = np.concatenate([found, drawn[kept]])
+        if len(found) < n:
             raise StartError(
-                f"found {count} of {n} places {clearance:g} m clear of everything and "
+                f"found {len(found)} of {n} places {clearance:g} m clear of everything and "
                 f"{min_goal_distance:g} m from the goal, from which a robot of radius {radius:g} m "
                 "reaches it; ask for less clearance or distance, or make room"
             )
-        return np.concatenate([np.zeros((0, 2)), *found])[:n]
+        return found[:n]
+
+    def suit(
+        self,
+        places: FloatArray,
+        region: BaseGeometry,
+        radius: float,
+        clearance: float,
+        goal: npt.ArrayLike,
+        min_goal_distance: float,
+    ) -> npt.NDArray[np.bool_]:
+        """Return which places (n, 2) in a region can be starts, (n,); else as `sample_free`."""
+        kept = shapely.contains_xy(region, places)
+        kept &= np.linalg.norm(places - np.asarray(goal), axis=-1) >= min_goal_distance
+        kept &= self.clearance(places, radius) > clearance
+        return kept

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 import numpy.typing as npt
-import shapely
 
 from nomad_mj.arenas.floor_plan import FloorPlan
 from nomad_mj.errors import NomadError, StartError
@@ -45,14 +44,8 @@ def halton_starts(
         The room.
     n : int
         How many.
-    goal : array_like, shape (2,)
-        The goal, world frame [m].
-    radius : float
-        Radius of the robot [m].
-    clearance : float
-        Its perimeter is farther than this from everything [m].
-    min_goal_distance : float
-        Its centre is at least this far from the goal, in a straight line [m].
+    goal, radius, clearance, min_goal_distance
+        As of `FloorPlan.sample_free`.
     fewest : int, optional
         So many are enough where the room has no more; `n` by default.
 
@@ -69,16 +62,15 @@ def halton_starts(
     from scipy.stats import qmc  # takes half a second, and few ask for it
 
     points = low + (high - low) * qmc.Halton(2, scramble=False).random(_MOST_POINTS)
-    keep = shapely.contains_xy(plan.interior(radius, goal), points)
-    keep &= plan.clearance(points, radius) > clearance
-    keep &= np.linalg.norm(points - np.asarray(goal), axis=-1) >= min_goal_distance
+    region = plan.interior(radius, goal)
+    starts = points[plan.suit(points, region, radius, clearance, goal, min_goal_distance)]
     needed = n if fewest is None else fewest
-    if keep.sum() < needed:
+    if len(starts) < needed:
         raise StartError(
-            f"the room has only {keep.sum()} of {needed} starts {clearance:g} m clear of "
+            f"the room has only {len(starts)} of {needed} starts {clearance:g} m clear of "
             f"everything and {min_goal_distance:g} m from the goal; ask for fewer, or make room"
         )
-    return points[keep][:n]
+    return starts[:n]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

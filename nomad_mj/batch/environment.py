@@ -77,7 +77,7 @@ class BatchEnvironment(ABC):
 
     @abstractmethod
     def _begun(self, chosen: IntArray) -> None:
-        """Do what is to be done when episodes of worlds have begun."""
+        """Do what else is to be done when episodes of worlds (n,) have begun."""
 
     def reset(
         self,
@@ -112,6 +112,7 @@ class BatchEnvironment(ABC):
         return self.time_step()
 
     def _begin(self, chosen: IntArray) -> None:
+        """Begin an episode in each of some worlds (n,)."""
         self._type[chosen] = LAST  # should it fail, these begin at the next step
         self.worlds.reset(chosen)
         self._type[chosen] = FIRST

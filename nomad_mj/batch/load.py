@@ -115,7 +115,7 @@ def _scenes(
 
 
 def _goals(goal: Goals, worlds: int) -> list[Goal]:
-    """Return the goal of each world."""
+    """Return the goal of each world, given one for all or one for each."""
     if goal is None:
         return [None] * worlds
     given: list[Any] = list(goal)
@@ -127,6 +127,7 @@ def _goals(goal: Goals, worlds: int) -> list[Goal]:
 
 
 def _whole(name: str, value: Any) -> int:
+    """Return an option that must be a whole number from 1 on; raise ConfigError if it is not."""
     is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
     if not is_whole or value < 1:
         raise ConfigError(f"{name} {value!r}: must be 1, 2, 3, ...")
@@ -134,4 +135,5 @@ def _whole(name: str, value: Any) -> int:
 
 
 def _processors() -> int:
+    """Return how many processors this process may use: fewer than there are in a container."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

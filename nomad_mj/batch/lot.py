@@ -14,6 +14,9 @@ from nomad_mj.tasks.infrared import Infrared
 from nomad_mj.tasks.readout import Readout
 from nomad_mj.types import FloatArray, IntArray, Pose
 
+Moved = dict[int, tuple[IntArray, FloatArray]]
+"""Mocap bodies that move (k,), and where to (k, 2) [m], by the world or its row in a lot."""
+
 _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 _CURRENT = mujoco.mjtStage.mjSTAGE_VEL.value  # positions, velocities and what is sensed of them
 
@@ -105,12 +108,7 @@ class Lot:
         mujoco.mj_getState(physics.model.ptr, physics.data.ptr, self._batch.state[row], _STATE)
         self._batch.warning[row] = 0
 
-    def step(
-        self,
-        rows: IntArray,
-        commands: FloatArray,
-        moved: "dict[int, tuple[IntArray, FloatArray]]",
-    ) -> None:
+    def step(self, rows: IntArray, commands: FloatArray, moved: Moved) -> None:
         """Advance worlds by a control step.
 
         Parameters
@@ -119,8 +117,8 @@ class Lot:
             Which of the lot's, ascending.
         commands : array (n, M)
             Their motors' commands.
-        moved : dict
-            By row, the mocap bodies that move and where to (k, 2) [m].
+        moved : Moved
+            What moves beside the robots, by row.
 
         Raises
         ------
@@ -146,7 +144,7 @@ class Lot:
         self._check(rows)
 
     def _see_to_near(self, rows: IntArray) -> None:
-        """Let the models of large rooms hold what is near their robots."""
+        """Let the models of large rooms hold what is near the robots of rows (n,)."""
         changed = False
         for row in rows.tolist() if self._near else ():
             if row in self._near:
@@ -155,6 +153,7 @@ class Lot:
             self._batch.set_models(self._models)  # or the engine may not see it
 
     def _check(self, rows: IntArray) -> None:
+        """Raise PhysicsError if the engine has warned of a world of rows (n,)."""
         counts = self._batch.warning[:, :, 1]
         if not np.count_nonzero(counts):
             return

@@ -1,7 +1,7 @@
 """Path finding of many robots, one move of each at a time."""
 
 from collections import OrderedDict
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,24 @@ from nomad_mj.envs.path_finding import move_spec, told_of_moves
 from nomad_mj.motion import Outcome
 from nomad_mj.scene import CONTROL_TIMESTEP
 from nomad_mj.types import FloatArray, IntArray
+
+
+class _Underway(NamedTuple):
+    """A move that a world carries out.
+
+    Attributes
+    ----------
+    driving : Driving
+        Its control, and what it has been like so far.
+    asked : array (2,)
+        The way that was asked for [m].
+    goal : array (2,)
+        From the robot to the goal when it began [m].
+    """
+
+    driving: Driving
+    asked: FloatArray
+    goal: FloatArray
 
 
 class BatchPathFinding(BatchEnvironment):
@@ -48,7 +66,7 @@ class BatchPathFinding(BatchEnvironment):
         self.config = config or PathFindingConfig()
         self._robot = worlds.tasks[0].scene.robot
         self._lookout = Lookout(self._robot.layout, self.config.motion)
-        self._moves: dict[int, tuple[Driving, FloatArray, FloatArray]] = {}
+        self._moves: dict[int, _Underway] = {}  # by world
         self._watched: list[tuple[float, float]] = [(np.nan, np.nan)] * worlds.count
         self._slack = np.zeros_like(worlds.ranges)
         self._ticks = np.zeros(worlds.count, dtype=np.intp)
@@ -118,7 +136,7 @@ class BatchPathFinding(BatchEnvironment):
             bumped = bool(self.worlds.bumpers[world].any())
             odometry = self.worlds.odometry[world]
             driving = Driving(move, self._robot, self._lookout.motion, odometry, bumped)
-            self._moves[world] = driving, move, goals[world].copy()
+            self._moves[world] = _Underway(driving, move, goals[world].copy())
 
     def advance(self) -> npt.NDArray[np.bool_]:
         """Go on with all moves by a control step; return whose are over since the last call, (N,).
@@ -130,7 +148,7 @@ class BatchPathFinding(BatchEnvironment):
         going: list[int] = []
         worlds = sorted(self._moves)
         for world, free in zip(worlds, self._free(worlds), strict=True):
-            command = self._moves[world][0].command(free)
+            command = self._moves[world].driving.command(free)
             if command is None:
                 self._finish(world)
                 finished[world] = True
@@ -143,16 +161,16 @@ class BatchPathFinding(BatchEnvironment):
 
     def _free(self, worlds: list[int]) -> list[float]:
         """Return the shortest reading ahead of each of some worlds [m]."""
-        turned = [w for w in worlds if self._moves[w][0].watched != self._watched[w]]
+        turned = [w for w in worlds if self._moves[w].driving.watched != self._watched[w]]
         if turned:
-            watched = [self._moves[world][0].watched for world in turned]
+            watched = [self._moves[world].driving.watched for world in turned]
             self._slack[turned] = self._lookout.slack(*np.array(watched).T)
             for world, way in zip(turned, watched, strict=True):
                 self._watched[world] = way
         return np.minimum.reduce(self.worlds.ranges[worlds] + self._slack[worlds], axis=1).tolist()
 
     def _drive(self, going: list[int], commands: FloatArray) -> None:
-        """Advance worlds by a control step of their moves."""
+        """Advance worlds by a control step of their moves, given their commands (n, M)."""
         worlds = self.worlds
         chosen = np.array(going, dtype=np.intp)
         try:
@@ -165,21 +183,22 @@ class BatchPathFinding(BatchEnvironment):
         bumped = np.logical_or.reduce(worlds.bumpers[chosen], axis=1).tolist()
         for world, near, touched in zip(going, nearest, bumped, strict=True):
             travel, odometry = worlds.tasks[world].travel, worlds.odometry[world]
-            self._moves[world][0].take_in(travel, odometry, near, touched)
+            self._moves[world].driving.take_in(travel, odometry, near, touched)
 
     def _finish(self, world: int) -> None:
         """Note what became of the move of a world."""
-        driving, move, goal = self._moves.pop(world)
-        done = driving.result()
+        move = self._moves.pop(world)
+        done = move.driving.result()
         self._ticks[world] += done.ticks
         self._note(world, done)
         task = self.worlds.tasks[world]
         ended = task.reaches_goal(task.goal_distance(self.worlds.worlds[world]))
         elapsed = self._ticks[[world]] * CONTROL_TIMESTEP >= self._time_limit
-        reward = reward_of(done, move, goal)
+        reward = reward_of(done, move.asked, move.goal)
         self._tell(np.array([world]), [reward], np.array([ended]), elapsed)
 
     def _note(self, world: int, done: Move) -> None:
+        """Let the observations of a world tell of a move."""
         self._duration[world] = done.ticks * CONTROL_TIMESTEP
         self._driven[world] = done.driven
         self._clearance[world] = done.clearance

@@ -5,12 +5,10 @@ from functools import partial
 
 import numpy as np
 
-from nomad_mj.batch.lot import Lot, Sensed
+from nomad_mj.batch.lot import Lot, Moved, Sensed
 from nomad_mj.scene import Scene
 from nomad_mj.tasks import MotorConfig, NavigationPhysics
 from nomad_mj.types import FloatArray, IntArray, Pose
-
-Moved = dict[int, tuple[IntArray, FloatArray]]
 
 
 class Simulations:
@@ -54,7 +52,20 @@ class Simulations:
         lot.take(row, physics)
 
     def step(self, worlds: IntArray, commands: FloatArray, moved: Moved) -> None:
-        """Advance worlds (n,), ascending, by a control step; arguments as of `Lot.step`."""
+        """Advance worlds (n,), ascending, by a control step, given their commands (n, M).
+
+        Parameters
+        ----------
+        worlds, commands
+            As of `Lot.step`, by the numbers of the worlds.
+        moved : Moved
+            By world; that of others is left alone.
+
+        Raises
+        ------
+        PhysicsError
+            Naming the worlds of a lot that diverged.
+        """
         jobs = [
             partial(lot.step, rows, commands[chosen], _own(moved, lot, rows))
             for lot, chosen, rows in self._parts(worlds)

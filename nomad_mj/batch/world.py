@@ -1,11 +1,24 @@
 """One of many worlds, seen as a simulation of its own."""
 
-from nomad_mj.batch.simulations import Moved, Simulations
+from nomad_mj.batch.lot import Moved
+from nomad_mj.batch.simulations import Simulations
 from nomad_mj.types import FloatArray, IntArray, Pose
 
 
 class World:
-    """One world, as its task asks for it."""
+    """One world, as its task asks for it.
+
+    Parameters
+    ----------
+    number : int
+        Which.
+    simulations : Simulations
+        Of all worlds.
+    moved : Moved
+        Where it notes what moves in the step to come.
+    touched : array (B,)
+        Its bumpers as they are, kept up to date by `Worlds`.
+    """
 
     def __init__(
         self, number: int, simulations: Simulations, moved: Moved, touched: FloatArray

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from nomad_mj.batch.simulations import Moved, Simulations
+from nomad_mj.batch.lot import Moved
+from nomad_mj.batch.simulations import Simulations
 from nomad_mj.batch.world import World
 from nomad_mj.errors import ConfigError, NomadError, StartError
 from nomad_mj.scene import Scene
@@ -40,11 +41,15 @@ class Worlds:
 
     Attributes
     ----------
+    count : int
+        Number of worlds N.
     tasks : list of MotorTask
         One a world.
+    worlds : list of World
+        Each as its task sees it.
     ranges : array (N, C)
         The range readings of the present control step [m].
-    bumpers, encoders, odometry, goal : array (N, ...)
+    bumpers, encoders, odometry, goal : array (N, B), (N, E), (N, 4), (N, 2)
         The other observations, as of `MotorTask`.
     """
 
@@ -62,9 +67,9 @@ class Worlds:
         self._moved: Moved = {}
         self._ranging = RangingOfMany([task.ranging for task in self.tasks])
         self._goals = [(0.0, 0.0)] * self.count  # where each goal is now [m]
-        self._moves = any(task.movers is not None for task in self.tasks)
+        self._has_movers = any(task.movers is not None for task in self.tasks)
         robot = first.robot
-        self._plain_bumpers = not config.bumper_noise.active
+        self._bumpers_err = config.bumper_noise.active
 
         def rows(size: int) -> FloatArray:
             return np.zeros((self.count, size))
@@ -148,7 +153,7 @@ class Worlds:
             return
         chosen: list[int] = worlds.tolist()
         self._moved.clear()
-        if self._moves:
+        if self._has_movers:
             for world in chosen:
                 self.tasks[world].move_movers(self.worlds[world])
                 self._goals[world] = self.tasks[world].goal_xy
@@ -156,7 +161,7 @@ class Worlds:
         self._sense(worlds, chosen)
 
     def _sense(self, worlds: IntArray, chosen: list[int]) -> None:
-        """Read the sensors of worlds."""
+        """Read the sensors of worlds (n,), `chosen` the same as a list."""
         cones, bumpers, encoders = self._simulations.read(worlds)
         tasks, poses = self.tasks, self._poses
         self.ranges[worlds] = self._ranging.read(worlds, cones)
@@ -165,7 +170,7 @@ class Worlds:
         odometry = np.array([tasks[world].own.reckon(own, poses[world]) for world, own in pairs])
         self.odometry[worlds] = odometry
         self._touched[worlds] = bumpers
-        if not self._plain_bumpers:
+        if self._bumpers_err:
             told = zip(chosen, bumpers, strict=True)
             bumpers = np.array([tasks[world].own.tell_bumpers(own) for world, own in told])
         self.bumpers[worlds] = bumpers
@@ -173,7 +178,7 @@ class Worlds:
         self.goal[worlds] = goals - odometry[:, :2]
 
     def goal_distances(self, worlds: IntArray) -> list[float]:
-        """Return the true distances of robots to their goals [m]."""
+        """Return the true distances of the robots of worlds (n,) to their goals [m]."""
         goals = [self._goals[world] for world in worlds.tolist()]
         places = self._simulations.places(worlds).tolist()
         return [
@@ -182,7 +187,7 @@ class Worlds:
         ]
 
     def observe(self) -> "OrderedDict[str, FloatArray]":
-        """Return the observations of all worlds, copied."""
+        """Return the observations of all worlds, copied, each with N rows."""
         result: OrderedDict[str, FloatArray] = OrderedDict()
         for name, first, last in self.tasks[0].slices:
             result[name] = self.ranges[:, first:last].copy()

@@ -1,18 +1,18 @@
 """What `gymnasium.make_vec` makes: the vector environments of both tasks."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
 from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
 
-from nomad_mj.batch import BatchMotor, load_batch
+from nomad_mj.batch import BatchMotor, BatchPathFinding, load_batch
 from nomad_mj.batch.load import Goals, Rooms
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
 from nomad_mj.errors import ConfigError
-from nomad_mj.gym.account import Account, motor_measures, move_measures
+from nomad_mj.gym.account import Account, Measures, motor_measures, move_measures
 from nomad_mj.gym.base import refuse_observation
 from nomad_mj.gym.everything import EverythingObserver
 from nomad_mj.gym.motor import motor_commands
@@ -26,6 +26,7 @@ from nomad_mj.gym.options import structure, task_options
 from nomad_mj.gym.reward import RewardOptions
 from nomad_mj.gym.vector import NavigationVectorEnv
 from nomad_mj.perception import SituationSpec
+from nomad_mj.scene import Scene
 from nomad_mj.types import FloatArray
 
 
@@ -76,21 +77,22 @@ def path_finding_vector_env(
     batch = load_batch(
         "path_finding", num_envs, room, robot, given, limits, goal=goal, threads=threads
     )
-    observers: list[Observer] = [
-        SituationObserver(scene, spec)
-        if observation == "situation"
-        else RangesObserver(scene)
-        if observation == "ranges"
-        else EverythingObserver(scene, batch.single_observation_spec())
-        for scene in batch.scenes
-    ]
-    accounts = [
-        Account(task, world, observer, options, move_measures(task))
-        for task, world, observer in zip(batch.tasks, batch.worlds.worlds, observers, strict=True)
-    ]
+    observers = [_move_observer(observation, scene, spec, batch) for scene in batch.scenes]
+    measures = [move_measures(task) for task in batch.tasks]
+    accounts = _accounts(batch, observers, options, measures)
     space = spaces.Box(-1.0, 1.0, (2,), np.float32)
     seen = _common([observer.space for observer in observers])
     return NavigationVectorEnv(batch, accounts, seen, space, autoreset_mode, max_episode_steps)
+
+
+def _move_observer(
+    observation: str, scene: Scene, situation: SituationSpec, batch: BatchPathFinding
+) -> Observer:
+    if observation == "situation":
+        return SituationObserver(scene, situation)
+    if observation == "ranges":
+        return RangesObserver(scene)
+    return EverythingObserver(scene, batch.single_observation_spec())
 
 
 def motor_vector_env(
@@ -123,12 +125,9 @@ def motor_vector_env(
         else EverythingObserver(task.scene, batch.single_observation_spec())
         for task in batch.tasks
     ]
-    accounts = [
-        Account(task, world, observer, options, motor_measures(task, world))
-        for task, world, observer in zip(batch.tasks, batch.worlds.worlds, observers, strict=True)
-    ]
-    motors = batch.action_spec().shape[1]
-    space = spaces.Box(-1.0, 1.0, (motors,), np.float32)
+    pairs = zip(batch.tasks, batch.worlds.worlds, strict=True)
+    accounts = _accounts(batch, observers, options, [motor_measures(*pair) for pair in pairs])
+    space = spaces.Box(-1.0, 1.0, batch.action_spec().shape[1:], np.float32)
     seen = _common([observer.space for observer in observers])
     return _MotorVectorEnv(batch, accounts, seen, space, autoreset_mode, max_episode_steps)
 
@@ -139,6 +138,19 @@ class _MotorVectorEnv(NavigationVectorEnv):
     def _commands(self, actions: FloatArray) -> FloatArray:
         spec = self.batch.action_spec()
         return motor_commands(actions, spec.minimum, spec.maximum)
+
+
+def _accounts(
+    batch: BatchPathFinding | BatchMotor,
+    observers: Sequence[Observer],
+    reward: RewardOptions,
+    measures: Sequence[Measures],
+) -> list[Account]:
+    """Return an account for each world, given its observer and what measures its steps."""
+    parts = zip(batch.tasks, batch.worlds.worlds, observers, measures, strict=True)
+    return [
+        Account(task, world, observer, reward, measure) for task, world, observer, measure in parts
+    ]
 
 
 def _refuse_pictures(render_mode: str | None) -> None:

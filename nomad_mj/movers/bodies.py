@@ -93,19 +93,8 @@ def read_moving(
     """
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    site = goal_site(model)
-    under = int(model.body_rootid[model.site_bodyid[site]])
     _check_names(model, room)
-    moving_goal = None
-    if model.body_mocapid[under] >= 0:
-        _check_goal(model, room, under)
-        shift: list[float] = (data.site_xpos[site] - data.xpos[under]).tolist()
-        moving_goal = MovingBody(
-            room_name(model.body(under).name),
-            int(model.body_mocapid[under]),
-            _drift(goal or _along(data, under), speed),
-            offset=(shift[0], shift[1]),
-        )
+    moving_goal = _goal(model, data, room, speed, goal)
     found: list[MovingBody] = []
     for body in np.flatnonzero(model.body_mocapid >= 0).tolist():
         if is_moving(model, body) and (geoms := _colliding(model, body)):
@@ -114,6 +103,24 @@ def read_moving(
             walker = _walker(model, data, body, room, made.drift, mine)
             found.append(replace(made, walker=walker))
     return Moving(moving_goal, tuple(found))
+
+
+def _goal(
+    model: mujoco.MjModel, data: mujoco.MjData, room: str, speed: float, config: MovingGoal | None
+) -> MovingBody | None:
+    """Return the body under the goal's site if it moves, by the options or along its x axis."""
+    site = goal_site(model)
+    under = int(model.body_rootid[model.site_bodyid[site]])
+    if model.body_mocapid[under] < 0:
+        return None
+    _check_goal(model, room, under)
+    x, y, _ = (data.site_xpos[site] - data.xpos[under]).tolist()
+    return MovingBody(
+        room_name(model.body(under).name),
+        int(model.body_mocapid[under]),
+        _drift(config or _along(data, under), speed),
+        offset=(x, y),
+    )
 
 
 def _obstacle(

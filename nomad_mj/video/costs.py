@@ -2,6 +2,7 @@
 
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -66,8 +67,15 @@ class _Episode:
         painter = self._studio.painter
         painter.ranges = np.minimum(3.0 * self._random.random(len(self._rays.first)), 6.0)
         self._studio.show(self._data)
-        time = CONTROL_TIMESTEP * self._frame
-        self._encoder.write(self._studio.frame(time, 1 / 30))
+        self._encoder.write(self._studio.frame(CONTROL_TIMESTEP * self._frame, 1 / 30))
+
+
+def _timed(draw: Callable[[], object]) -> float:
+    """Return what a frame of a block takes, on average [s]."""
+    began = time.perf_counter()
+    for _ in range(_BLOCK):
+        draw()
+    return (time.perf_counter() - began) / _BLOCK
 
 
 def frame_costs(
@@ -91,33 +99,25 @@ def frame_costs(
     NomadError
         As of `EpisodeRecorder`.
     """
-    recorded: list[float] = []
-    bare: list[float] = []
-    model, option = env.scene.model, scene_option()
-    sky = mujoco.mjtRndFlag.mjRND_SKYBOX
+    option, sky = scene_option(), mujoco.mjtRndFlag.mjRND_SKYBOX
     width, height = size
     with tempfile.TemporaryDirectory() as folder, Studio(env.scene, view, size) as studio:
         encoder = Encoder(Path(folder) / "costs.mp4", size, 30.0)
         encoder.open()
-        renderer = mujoco.Renderer(model, height, width)
+        renderer = mujoco.Renderer(env.scene.model, height, width)
         try:
             episode = _Episode(env, studio, encoder)
             camera = studio.camera(view)
-            for block in range(1 + max(frames // _BLOCK, 1)):  # the first warms up
-                start = time.perf_counter()
-                for _ in range(_BLOCK):
-                    episode.play()
-                middle = time.perf_counter()
-                for _ in range(_BLOCK):
-                    renderer.update_scene(studio.data, camera, option)
-                    renderer.scene.flags[sky] = sees_sky(renderer.scene)
-                    renderer.render()
-                end = time.perf_counter()
-                if block:
-                    recorded.append((middle - start) / _BLOCK)
-                    bare.append((end - middle) / _BLOCK)
+
+            def draw_bare() -> None:
+                renderer.update_scene(studio.data, camera, option)
+                renderer.scene.flags[sky] = sees_sky(renderer.scene)
+                renderer.render()
+
+            count = 1 + max(frames // _BLOCK, 1)  # the first warms up
+            blocks = [(_timed(episode.play), _timed(draw_bare)) for _ in range(count)]
         finally:
             renderer.close()
             encoder.discard()
-    recorded_us, bare_us = (1e6 * float(np.quantile(times, 0.25)) for times in (recorded, bare))
-    return FrameCosts(recorded_us, bare_us)
+    recorded_us, bare_us = 1e6 * np.quantile(blocks[1:], 0.25, axis=0)
+    return FrameCosts(float(recorded_us), float(bare_us))

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-from nomad_agents.benchmark.learners import find_learner
 from nomad_agents.benchmark.run import BenchmarkRun
 from nomad_agents.experiments.runs import Result, Row
+from nomad_agents.learners import find_learner
 
 
 def made_up_run(

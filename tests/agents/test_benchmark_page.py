@@ -8,8 +8,8 @@ from browser import Browser, find_chromium
 from known_benchmark import made_up
 from nomad_agents.benchmark.figures.efficiency import spread_out
 from nomad_agents.benchmark.figures.looks import look, spoken
-from nomad_agents.benchmark.learners import LEARNERS
 from nomad_agents.benchmark.presentation import present
+from nomad_agents.learners import LEARNERS
 from PIL import Image
 
 AGENTS = ("straight", "planner", "sac:ranges", "reactive_planner:tuned")

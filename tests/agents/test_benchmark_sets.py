@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from nomad_agents.benchmark.checks import CHECK_SEED, Checks
 from nomad_agents.benchmark.conditions import CONDITIONS, find_condition
-from nomad_agents.benchmark.learners import LEARNERS, Lesson, find_learner, usual_agents
 from nomad_agents.benchmark.plan import MOST_SEEDS, Plan, plan_runs
 from nomad_agents.benchmark.sets import SETS, Case, find_set, room_sets, write_room
 from nomad_agents.evaluation import draw_starts
 from nomad_agents.experiments.measures import UNSEEN_SEED, unseen_starts
+from nomad_agents.learners import LEARNERS, Lesson, find_learner, usual_agents
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.registry import find_config
 from nomad_agents.training import Training, TrainingConfig, stream, train

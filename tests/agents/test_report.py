@@ -152,8 +152,8 @@ def test_what_cannot_be_shown_is_told_in_one_line(section: Section, tmp_path: Pa
 def test_provenance_is_that_of_all_machines() -> None:
     study = Study("faithful", "paper_room", "nomad200", 2)
     machines = (
-        {"python": "3.12.1", "system": "B", "wall_s": 1800},
-        {"system": "A", "wall_s": 1800},
+        {"python": "3.12.1", "system": "B", "wall_s": 9000, "cpu_s": 1800},
+        {"system": "A", "wall_s": 1800, "cpu_s": 1800},
     )
     results = [
         Result(Run("fig6", "", agent, "faithful", "paper_room", "nomad200", 0), {}, machine=machine)

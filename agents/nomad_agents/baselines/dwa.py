@@ -25,22 +25,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nomad_agents.agent import Agent, Decision
-from nomad_agents.baselines.way import (
-    action_towards,
-    free_way,
-    longest_move,
-    occupied_cells,
-    reach_of,
-    require,
-)
+from nomad_agents.baselines.classical import BLOCKED, NEAR, ClassicalAgent
+from nomad_agents.baselines.way import free_way, require
 from nomad_agents.reactive_planner.config import ReactivePlannerConfig
 from nomad_mj.geometry import direction, wrap_angle
 from nomad_mj.perception import Percept
 from nomad_mj.types import FloatArray, SensorLayout
-
-_NEAR = 1e-6  # [m] from the goal: there is no direction to it
-_BLOCKED = 0.02  # [m] no move is worth making that is shorter
 
 
 @dataclass(frozen=True)
@@ -96,10 +86,11 @@ class DwaConfig:
         )
 
 
-class DynamicWindow(Agent):
+class DynamicWindow(ClassicalAgent[DwaConfig]):
     """Takes the admissible move of the highest objective; remembers its last direction."""
 
     name = "dwa"
+    kind = "planned"
 
     def __init__(
         self,
@@ -107,34 +98,19 @@ class DynamicWindow(Agent):
         config: ReactivePlannerConfig,
         window: DwaConfig | None = None,
     ) -> None:
-        super().__init__(layout, config.situation)
-        self.action = config.action
-        self.config = window or DwaConfig()
-        self._reach = reach_of(layout, self.config.safety)
-        self._offsets = wrap_angle(np.arange(self.config.directions) * self._step)
+        super().__init__(layout, config, window or DwaConfig())
+        step = 2 * np.pi / self.config.directions
+        self._offsets = wrap_angle(np.arange(self.config.directions) * step)
         self._kernel = self._smoothing_kernel()
-        self._last: float | None = None
 
-    @property
-    def _step(self) -> float:
-        return 2 * np.pi / self.config.directions
-
-    def start_episode(self, chance: np.random.Generator | None = None) -> None:
-        """Forget the direction of the last move."""
-        self._last = None
-
-    def act(self, percept: Percept, explore: np.random.Generator | None) -> Decision:
+    def _choose(self, percept: Percept, longest: float) -> tuple[float, float]:
         """Return the best move of the window."""
         config, goal = self.config, percept.goal
-        longest = longest_move(goal, self.action)
-        if longest < _NEAR:
-            return Decision(np.array([1.0, 0.0]), "planned")
         # From the goal's direction on, so that the straight way is one of them.
         headings = direction(goal) + self._offsets
-        cells = occupied_cells(percept, self.situation.grid, config.occupied)
-        free = free_way(headings, cells, self._reach)
+        free = free_way(headings, self._occupied(percept), self._reach)
         if np.hypot(goal[0], goal[1]) <= min(longest, free[0]):
-            return self._move(float(headings[0]), longest, goal)
+            return float(headings[0]), longest
         lengths = longest * np.arange(1, config.lengths + 1) / config.lengths
         turn = np.zeros_like(headings)
         if self._last is not None:
@@ -145,13 +121,13 @@ class DynamicWindow(Agent):
             # either hand.
             freest = free >= free.max() - 1e-9
             best = int(np.argmin(np.where(freest, np.abs(self._offsets), np.inf)))
-            return self._move(float(headings[best]), max(float(free[best]), _BLOCKED), goal)
+            return float(headings[best]), max(float(free[best]), BLOCKED)
         within = admissible & (turn <= config.turn)[:, None]
         admissible = within if within.any() else admissible
         value = self._objective(headings, lengths, free, turn, goal)
         value = np.where(admissible, value, -np.inf)
         best, length = np.unravel_index(int(np.argmax(value)), value.shape)
-        return self._move(float(headings[best]), float(lengths[length]), goal)
+        return float(headings[best]), float(lengths[length])
 
     def _objective(
         self,
@@ -166,7 +142,7 @@ class DynamicWindow(Agent):
         ends = np.stack([np.cos(headings), np.sin(headings)], axis=-1)[:, None] * lengths[:, None]
         left = goal - ends  # (directions, lengths, 2)
         off = np.abs(wrap_angle(direction(left) - headings[:, None]))
-        off = np.where(np.hypot(left[..., 0], left[..., 1]) < _NEAR, 0.0, off)
+        off = np.where(np.hypot(left[..., 0], left[..., 1]) < NEAR, 0.0, off)
         speed = lengths / (lengths[-1] + config.turn_way * turn[:, None])
         clearance = np.minimum(free, config.sight) / config.sight
         total = config.heading * (1 - off / np.pi) + config.speed * speed
@@ -179,7 +155,3 @@ class DynamicWindow(Agent):
         apart = wrap_angle(self._offsets[:, None] - self._offsets)
         weight = np.exp(-0.5 * (apart / self.config.smoothing) ** 2)
         return weight / weight.sum(axis=1, keepdims=True)
-
-    def _move(self, heading: float, length: float, goal: FloatArray) -> Decision:
-        self._last = heading
-        return Decision(action_towards(heading, length, goal, self.action), "planned")

@@ -29,23 +29,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nomad_agents.agent import Agent, Decision
-from nomad_agents.baselines.way import (
-    action_towards,
-    centres,
-    free_way,
-    longest_move,
-    occupied_cells,
-    reach_of,
-    require,
-)
+from nomad_agents.baselines.classical import BLOCKED, NEAR, ClassicalAgent
+from nomad_agents.baselines.way import centres, free_way, require
 from nomad_agents.reactive_planner.config import ReactivePlannerConfig
 from nomad_mj.geometry import direction, rotate, wrap_angle
 from nomad_mj.perception import Percept
 from nomad_mj.types import FloatArray, SensorLayout
 
-_NEAR = 1e-6  # [m] from the goal: there is no direction to it
-_BLOCKED = 0.02  # [m] no move is worth making that is shorter
 _FAN: FloatArray = np.deg2rad(
     [s * d for d in range(0, 181, 5) for s in ((1, -1) if d % 180 else (1,))]
 )
@@ -100,7 +90,7 @@ class PotentialConfig:
         )
 
 
-class PotentialField(Agent):
+class PotentialField(ClassicalAgent[PotentialConfig]):
     """Drives along the sum of forces; remembers its last direction and which wall it follows."""
 
     name = "potential"
@@ -111,41 +101,31 @@ class PotentialField(Agent):
         config: ReactivePlannerConfig,
         field: PotentialConfig | None = None,
     ) -> None:
-        super().__init__(layout, config.situation)
-        self.action = config.action
-        self.config = field or PotentialConfig()
-        self._reach = reach_of(layout, self.config.safety)
+        super().__init__(layout, config, field or PotentialConfig())
         cells = centres(config.situation.grid)
         self._distance = np.hypot(cells[:, 0], cells[:, 1])
-        # The unit vectors from each cell to the robot, weighted by its distance.
-        away = -cells / np.maximum(self._distance, _NEAR)[:, None]
+        # Unit vectors from each cell to the robot, and the push of a certain one, (cells**2, 2).
+        self._away = -cells / np.maximum(self._distance, NEAR)[:, None]
         gap = self._distance - layout.radius
         strength = self.config.repulsion / np.maximum(gap, self.config.near) ** 2
-        self._push = away * (strength * (gap <= self.config.window))[:, None]
-        self._away = away
+        self._push = self._away * (strength * (gap <= self.config.window))[:, None]
         self.start_episode()
 
     def start_episode(self, chance: np.random.Generator | None = None) -> None:
         """Forget the last direction and the wall that was followed."""
-        self._last: float | None = None
+        super().start_episode(chance)
         self._side = 0  # to which it turns from the wall's push: 1 left, -1 right, 0 no wall
         self._trapped_at = np.inf  # distance to the goal where it began to follow a wall [m]
 
-    def act(self, percept: Percept, explore: np.random.Generator | None) -> Decision:
+    def _choose(self, percept: Percept, longest: float) -> tuple[float, float]:
         """Return the move along the force."""
         goal = percept.goal
-        longest = longest_move(goal, self.action)
-        if longest < _NEAR:
-            return Decision(np.array([1.0, 0.0]), "reacted")
         ahead = float(direction(goal))
         push, raw = self._repulsion(percept, ahead if self._last is None else self._last)
         heading = self._steer(goal, push, raw)
-        cells = occupied_cells(percept, self.situation.grid, self.config.occupied)
-        heading, free = _clear(heading, cells, self._reach)
+        heading, free = _clear(heading, self._occupied(percept), self._reach)
         length = self._length(heading, raw, longest)
-        self._last = heading
-        length = min(length, max(free, _BLOCKED))
-        return Decision(action_towards(heading, length, goal, self.action), "reacted")
+        return heading, min(length, max(free, BLOCKED))
 
     def _repulsion(self, percept: Percept, heading: float) -> tuple[FloatArray, FloatArray]:
         """Return the sum of all pushes (2,), damped, for a robot that drives so, and undamped."""
@@ -191,5 +171,6 @@ def _clear(heading: float, cells: FloatArray, reach: float) -> tuple[float, floa
     """Return the direction nearest to this one that leads anywhere, and how far it is free [m]."""
     headings = wrap_angle(heading + _FAN)
     free = free_way(headings, cells, reach)
-    best = int(np.argmax(free > _BLOCKED)) if (free > _BLOCKED).any() else int(np.argmax(free))
+    open_ways = free > BLOCKED
+    best = int(np.argmax(open_ways if open_ways.any() else free))
     return float(headings[best]), float(free[best])

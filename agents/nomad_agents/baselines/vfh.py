@@ -26,25 +26,14 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from nomad_agents.agent import Agent, Decision
-from nomad_agents.baselines.way import (
-    action_towards,
-    centres,
-    free_way,
-    longest_move,
-    occupied_cells,
-    reach_of,
-    require,
-)
+from nomad_agents.baselines.classical import BLOCKED, ClassicalAgent
+from nomad_agents.baselines.way import centres, free_way, require
 from nomad_agents.reactive_planner.config import ReactivePlannerConfig
 from nomad_mj.geometry import direction, wrap_angle
 from nomad_mj.perception import GridSpec, Percept
 from nomad_mj.types import FloatArray, SensorLayout
 
 _Sectors: TypeAlias = npt.NDArray[np.bool_]
-
-_NEAR = 1e-6  # [m] from the goal: there is no direction to it
-_BLOCKED = 0.02  # [m] a direction is no way out that leads no farther
 
 
 @dataclass(frozen=True)
@@ -98,7 +87,7 @@ class VfhConfig:
         )
 
 
-class VectorFieldHistogram(Agent):
+class VectorFieldHistogram(ClassicalAgent[VfhConfig]):
     """Steers for the opening of least cost; remembers what was blocked and where it went."""
 
     name = "vfh"
@@ -109,10 +98,7 @@ class VectorFieldHistogram(Agent):
         config: ReactivePlannerConfig,
         histogram: VfhConfig | None = None,
     ) -> None:
-        super().__init__(layout, config.situation)
-        self.action = config.action
-        self.config = histogram or VfhConfig()
-        self._reach = reach_of(layout, self.config.safety)
+        super().__init__(layout, config, histogram or VfhConfig())
         self._width = 2 * np.pi / self.config.sectors
         self._distance, self._spread = self._tables(config.situation.grid)
         self.start_episode()
@@ -135,33 +121,28 @@ class VectorFieldHistogram(Agent):
     def start_episode(self, chance: np.random.Generator | None = None) -> None:
         """Forget the sectors that were blocked and the last direction."""
         self._was_blocked = np.zeros(self.config.sectors, dtype=np.bool_)
-        self._last: float | None = None
+        super().start_episode(chance)
 
-    def act(self, percept: Percept, explore: np.random.Generator | None) -> Decision:
+    def _choose(self, percept: Percept, longest: float) -> tuple[float, float]:
         """Return the move through the best opening."""
         config, goal = self.config, percept.goal
-        longest = longest_move(goal, self.action)
-        if longest < _NEAR:
-            return Decision(np.array([1.0, 0.0]), "reacted")
         density = self._density(percept)
         held = self._was_blocked & (density > config.low)
         self._was_blocked = held | (density >= config.high)
         headings = self._candidates(~self._was_blocked, float(direction(goal)))
-        cells = occupied_cells(percept, self.situation.grid, config.occupied)
+        cells = self._occupied(percept)
         free = free_way(headings, cells, self._reach)
-        headings, free = headings[free > _BLOCKED], free[free > _BLOCKED]
+        headings, free = headings[free > BLOCKED], free[free > BLOCKED]
         if len(headings):
             best = int(np.argmin(self._cost(headings, goal)))
         else:  # shut in: the emptiest of the sectors that lead anywhere, of these the freest
             headings = np.arange(config.sectors, dtype=np.float64) * self._width
             free = free_way(headings, cells, self._reach)
-            density = np.where(free >= min(_BLOCKED, free.max()), density, np.inf)
+            density = np.where(free >= min(BLOCKED, free.max()), density, np.inf)
             way = np.where(density <= density.min() + 1e-9, np.minimum(free, longest), -np.inf)
             cost = np.where(way >= way.max() - 1e-9, self._cost(headings, goal), np.inf)
             best = int(np.argmin(cost))
-        self._last = float(headings[best])
-        length = min(max(float(free[best]), _BLOCKED), longest)
-        return Decision(action_towards(self._last, length, goal, self.action), "reacted")
+        return float(headings[best]), min(max(float(free[best]), BLOCKED), longest)
 
     def _density(self, percept: Percept) -> FloatArray:
         """Return the primary polar histogram (sectors,)."""

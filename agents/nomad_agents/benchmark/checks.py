@@ -15,7 +15,8 @@ CHECK_SEED = 2_000_000  # far from the seeds that train and from that of the fin
 MASTERED = 0.9  # of the starts
 _FIRST = 25  # decisions of learning before the first check of what was learnt
 _CLOSE, _APART = 1.4, 2.0  # decisions until the next check, as a factor
-_KINDS = ("", "unaided_")
+_KINDS = ("", "unaided_")  # prefixes of what is told of either agent
+_RATES = ("success_rate", "strict_success_rate", "spl")
 
 
 class Checks:
@@ -26,7 +27,7 @@ class Checks:
     env : PathFinding
         To drive in.
     starts : int
-        How many.
+        How many to drive from.
     seed : int
         Of the run: decides the noise.
     decisions : int
@@ -73,18 +74,17 @@ class Checks:
         **learning
             ``decisions``, ``sim_s`` and what else learning has taken so far.
         """
-        entry: Row = dict(learning)
+        rates: Row = {}
         for kind, each in zip(_KINDS, (agent, unaided), strict=True):
             if each is None or (kind in self._mastered and not self.whole):
                 continue
             trials = evaluate(self._env, each, self._starts, self._seed, self._decisions)
             summary = summarise(self._env, trials)
-            for key in ("success_rate", "strict_success_rate", "spl"):
-                entry[f"{kind}{key}"] = summary[key]
+            rates |= {f"{kind}{key}": summary[key] for key in _RATES}
             if summary["success_rate"] >= MASTERED:
                 self._mastered.add(kind)
-        if any(key.endswith("success_rate") for key in entry):
-            self.curve.append(entry)
+        if rates:
+            self.curve.append(learning | rates)
         factor = _CLOSE if self.whole else _APART
         self.latest = learning["decisions"]
         self._next = max(_FIRST, self.latest * factor)

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from nomad_agents.benchmark.learners import find_learner
 from nomad_agents.benchmark.run import BenchmarkRun
 from nomad_agents.benchmark.sets import Case, TaskSet, write_room
+from nomad_agents.learners import find_learner
 from nomad_mj.errors import ConfigError
 from nomad_mj.scene import build_scene
 

@@ -14,10 +14,10 @@ import numpy as np
 import nomad_mj
 from nomad_agents.benchmark.checks import Checks, until_mastered
 from nomad_agents.benchmark.conditions import find_condition
-from nomad_agents.benchmark.learners import Lesson, find_learner
 from nomad_agents.evaluation import Trial
 from nomad_agents.experiments.measures import assess, episode_rows
 from nomad_agents.experiments.runs import Result, Row, Run
+from nomad_agents.learners import Learner, Lesson, find_learner
 from nomad_mj.envs import PathFinding
 
 
@@ -48,17 +48,21 @@ class BenchmarkRun(Run):
     whole_curves: bool
 
     @property
+    def learner(self) -> Learner:
+        """How its agent comes to be."""
+        return find_learner(f"{self.agent}:{self.config}")[0]
+
+    @property
     def label(self) -> str:
-        """What the agent is called: with its variant, unless that is the first one."""
-        learner, variant = find_learner(f"{self.agent}:{self.config}")
-        plain = variant == learner.variants[0] and not learner.learns
-        return self.agent if plain else f"{self.agent}:{variant}"
+        """What the agent is called: of those that do not learn, the first variant is not named."""
+        learner = self.learner
+        plain = self.config == learner.variants[0] and not learner.learns
+        return self.agent if plain else f"{self.agent}:{self.config}"
 
     def parameters(self) -> Row:
         """Return what agent and condition stand for."""
-        learner, variant = find_learner(f"{self.agent}:{self.config}")
         condition = {k: cattrs.unstructure(v) for k, v in find_condition(self.condition).items()}
-        return {"agent": learner.parameters(variant), "condition": condition}
+        return {"agent": self.learner.parameters(self.config), "condition": condition}
 
 
 def _task(run: BenchmarkRun) -> dict[str, Any]:
@@ -79,12 +83,11 @@ def work(run: Run, folder: Path) -> Result:
     assert isinstance(run, BenchmarkRun)
     task = _task(run)
     limited = {"environment_kwargs": {"time_limit": run.time_limit}}
-    learner, variant = find_learner(f"{run.agent}:{run.config}")
     with _open(task, **limited) as env:
         checks = Checks(env, run.check_starts, run.seed, run.decisions, whole=run.whole_curves)
-        lesson = Lesson(variant, run.seed, run.budget, partial(_open, task), task, checks)
+        lesson = Lesson(run.config, run.seed, run.budget, partial(_open, task), task, checks)
         began = time.perf_counter()
-        agent, row = learner.learn(lesson)
+        agent, row = run.learner.learn(lesson)
         learnt = round(time.perf_counter() - began, 3)
         metrics, trials = assess(env, agent, run.seed, run.starts, run.decisions)
         row = metrics | {"barn_score": barn_score(env, trials)} | row
@@ -95,16 +98,20 @@ def work(run: Run, folder: Path) -> Result:
 
 
 def barn_score(env: PathFinding, trials: Sequence[Trial]) -> float:
-    """Return the mean of S OT / clip(T, 4 OT, 8 OT), at most 0.25 (BARN challenge, ICRA 2022).
+    """Return the mean of S OT / clip(T, 4 OT, 8 OT), from 0 to 0.25 (BARN challenge, ICRA 2022).
 
-    T is the time it took, OT that of the shortest path at the robot's top speed.
+    S is 1 where the goal was reached, else 0; T the time it took; OT the time that the shortest
+    path takes at the robot's top speed.
     """
     speed = env.scene.robot.drive.limits.translate
-    scores: list[float] = []
-    for trial in trials:
-        best, took = trial.shortest / speed, trial.episode.duration
-        scored = trial.episode.reached and np.isfinite(best)
-        # A start at the goal leaves nothing to be quick at.
-        most = best / float(np.clip(took, 4 * best, 8 * best)) if scored and best > 0 else 0.25
-        scores.append(most if scored else 0.0)
-    return float(np.mean(scores))
+    return float(np.mean([_barn_score(trial, speed) for trial in trials]))
+
+
+def _barn_score(trial: Trial, speed: float) -> float:
+    """Return the score of one episode with a robot of a top speed [m/s]."""
+    best, took = trial.shortest / speed, trial.episode.duration  # [s]
+    if not trial.episode.reached or not np.isfinite(best):
+        return 0.0
+    if best <= 0:  # a start at the goal leaves nothing to be quick at
+        return 0.25
+    return best / float(np.clip(took, 4 * best, 8 * best))

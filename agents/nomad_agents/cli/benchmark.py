@@ -6,16 +6,16 @@ from pathlib import Path
 
 from rich.console import Console
 
-from nomad_agents.benchmark.learners import usual_agents
 from nomad_agents.benchmark.numbers import grouped
 from nomad_agents.benchmark.plan import Plan, plan_runs, require_extras
 from nomad_agents.benchmark.presentation import glances, group_tables, numbers, present
 from nomad_agents.benchmark.run import BenchmarkRun, work
 from nomad_agents.benchmark.sets import SETS, TaskSet, find_set, room_sets
 from nomad_agents.cli.common import console, interruptible, output_file, print_json
-from nomad_agents.cli.progress import run_progress
+from nomad_agents.cli.progress import counted_runs
 from nomad_agents.experiments.runs import Result, do_runs, stored_result
 from nomad_agents.experiments.tables import as_rich
+from nomad_agents.learners import usual_agents
 from nomad_mj.envs import DEFAULT_ROBOT
 from nomad_mj.errors import ConfigError
 
@@ -109,15 +109,15 @@ class Benchmark:
         if self.quick and agents == usual_agents():
             agents = _QUICK_AGENTS
         plan = Plan(
-            agents,
-            self._sets(),
-            self.robots,
-            self.seeds,
-            self.deep_seeds,
-            self.starts,
-            self.check_starts,
-            self.budget,
-            self.curves,
+            agents=agents,
+            sets=self._sets(),
+            robots=self.robots,
+            seeds=self.seeds,
+            deep_seeds=self.deep_seeds,
+            starts=self.starts,
+            check_starts=self.check_starts,
+            budget=self.budget,
+            whole_curves=self.curves,
         )
         if not self.quick:
             return plan
@@ -134,24 +134,8 @@ class Benchmark:
         if self.only_read:
             held = (stored_result(run, folder) for run in runs)
             return [result for result in held if result is not None]
-        done = 0
-        with run_progress(screen) as progress:
-            task = progress.add_task("runs", total=len(runs))
-
-            def after_run(result: Result) -> None:
-                nonlocal done
-                done += 1
-                progress.update(task, completed=done, description=result.run.experiment)
-
-            try:
-                return do_runs(runs, work, folder, self.jobs, after_run)
-            except KeyboardInterrupt:
-                screen.print(
-                    f"{done} of {len(runs)} runs are on file in {folder}; the same command goes "
-                    "on from there, with --only-read it shows what there is",
-                    soft_wrap=True,
-                )
-                raise
+        with counted_runs(screen, len(runs), folder) as after_run:
+            return do_runs(runs, work, folder, self.jobs, after_run)
 
     def _command(self) -> str:
         """Return what to type to get the same."""

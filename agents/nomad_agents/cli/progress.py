@@ -1,8 +1,9 @@
 """Progress bars."""
 
 from collections import deque
-from collections.abc import Iterable
-from types import TracebackType
+from collections.abc import Callable, Generator, Iterable
+from contextlib import contextmanager
+from pathlib import Path
 
 from rich.console import Console, RenderableType
 from rich.progress import (
@@ -17,6 +18,7 @@ from rich.text import Text
 from typing_extensions import Self
 
 from nomad_agents.deep.training import DeepTraining
+from nomad_agents.experiments.runs import Result
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.training import Training
 
@@ -34,12 +36,25 @@ class _CountedProgress(Progress):
         yield Text(self.counts, style="dim")
 
 
-class TrainingProgress:
+class _Shown:
+    """Shows a progress bar while it is entered."""
+
+    def __init__(self, progress: _CountedProgress) -> None:
+        self._progress = progress
+
+    def __enter__(self) -> Self:
+        self._progress.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._progress.stop()
+
+
+class TrainingProgress(_Shown):
     """A bar over the starts of the present pass or test, with the counts of the training."""
 
     def __init__(self, screen: Console, starts: int) -> None:
-        self._starts = starts
-        self._progress = _CountedProgress(
+        progress = _CountedProgress(
             TextColumn("{task.description}"),
             BarColumn(bar_width=30),
             MofNCompleteColumn(),
@@ -47,19 +62,9 @@ class TrainingProgress:
             TimeElapsedColumn(),
             console=screen,
         )
+        super().__init__(progress)
+        self._starts = starts
         self._task = self._progress.add_task("pass 1", total=starts, solved="")
-
-    def __enter__(self) -> Self:
-        self._progress.start()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._progress.stop()
 
     def show(self, training: Training, agent: ReactivePlanner) -> None:
         """Show how far the training is."""
@@ -81,11 +86,11 @@ class TrainingProgress:
         )
 
 
-class DeepProgress:
+class DeepProgress(_Shown):
     """A bar over the decisions of a deep training, with its counts."""
 
     def __init__(self, screen: Console, decisions: int) -> None:
-        self._progress = _CountedProgress(
+        progress = _CountedProgress(
             TextColumn("{task.description}"),
             BarColumn(bar_width=30),
             MofNCompleteColumn(),
@@ -95,21 +100,10 @@ class DeepProgress:
             console=screen,
             speed_estimate_period=60,
         )
+        super().__init__(progress)
         self._task = self._progress.add_task("decisions", total=decisions)
         self._episodes = 0
         self._ended = deque([0], maxlen=RECENT + 1)  # goals reached after each episode
-
-    def __enter__(self) -> Self:
-        self._progress.start()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._progress.stop()
 
     def show(self, training: DeepTraining) -> None:
         """Show how far the training is."""
@@ -150,3 +144,38 @@ def run_progress(screen: Console) -> Progress:
         console=screen,
         speed_estimate_period=300,  # runs differ in length
     )
+
+
+@contextmanager
+def counted_runs(
+    screen: Console, total: int, folder: Path
+) -> Generator[Callable[[Result], None], None, None]:
+    """Show a bar over runs and yield what to call after each; interrupted, say what is kept.
+
+    Parameters
+    ----------
+    screen : Console
+        Where people read.
+    total : int
+        Number of runs.
+    folder : Path
+        Where their results are kept.
+    """
+    done = 0
+    with run_progress(screen) as progress:
+        task = progress.add_task("runs", total=total)
+
+        def after_run(result: Result) -> None:
+            nonlocal done
+            done += 1
+            progress.update(task, completed=done, description=result.run.experiment)
+
+        try:
+            yield after_run
+        except KeyboardInterrupt:
+            screen.print(
+                f"{done} of {total} runs are on file in {folder}; the same command goes on from "
+                "there, with --only-read it shows what there is",
+                soft_wrap=True,
+            )
+            raise

@@ -8,12 +8,11 @@ import tyro
 from rich.console import Console
 
 from nomad_agents.cli.common import console, interruptible, output_file, print_json
-from nomad_agents.cli.progress import run_progress
+from nomad_agents.cli.progress import counted_runs
 from nomad_agents.experiments.experiment import Experiment, Study
 from nomad_agents.experiments.paper import EXPERIMENTS, EXTRA
 from nomad_agents.experiments.presentation import find, numbers, present
 from nomad_agents.experiments.reproduction import Results, count_runs, on_file, reproduce
-from nomad_agents.experiments.runs import Result
 from nomad_agents.experiments.tables import as_rich
 from nomad_agents.registry import find_config
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
@@ -101,24 +100,8 @@ class Reproduce:
         """Return the results, with a progress bar over all runs."""
         if self.only_read:
             return on_file(experiments, study, folder)
-        done, total = 0, count_runs(experiments, study)
-        with run_progress(screen) as progress:
-            task = progress.add_task("runs", total=total)
-
-            def after_run(result: Result) -> None:
-                nonlocal done
-                done += 1
-                progress.update(task, completed=done, description=result.run.experiment)
-
-            try:
-                return reproduce(experiments, study, folder, self.jobs, after_run)
-            except KeyboardInterrupt:
-                screen.print(
-                    f"{done} of {total} runs are on file in {folder}; the same command goes on "
-                    "from there, with --only-read it shows what there is",
-                    soft_wrap=True,
-                )
-                raise
+        with counted_runs(screen, count_runs(experiments, study), folder) as after_run:
+            return reproduce(experiments, study, folder, self.jobs, after_run)
 
 
 def choose(names: tuple[str, ...]) -> list[Experiment]:

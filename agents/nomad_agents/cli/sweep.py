@@ -21,7 +21,7 @@ from nomad_agents.sweeps.grid import SweepRun, describe, read_grid
 from nomad_agents.sweeps.ray_pool import do_on_ray, has_ray
 from nomad_agents.sweeps.store import TABLE, Store, locked, open_store, read_store
 from nomad_agents.sweeps.summary import choose_metrics, column, draw, make_summary
-from nomad_agents.sweeps.work import check_grid, do_run, sources
+from nomad_agents.sweeps.work import check_grid, do_run, require_extras, sources
 from nomad_mj.errors import ConfigError, OutputError
 
 _Pool = Callable[[partial[Row], Sequence[SweepRun]], Generator[tuple[SweepRun, Row], None, None]]
@@ -31,9 +31,11 @@ _Pool = Callable[[partial[Row], Sequence[SweepRun]], Generator[tuple[SweepRun, R
 class Sweep:
     """Train and evaluate agents under every combination of some options, over seeds.
 
-    Options: option=value,value,... for any option of train and evaluate and any parameter of the
-    agent, such as room=paper_room,clutter range_noise=0.05,0.3 k_ind=0.02,0.1 planner.margin=0.25.
-    The same command goes on where it was stopped; more seeds and values may be added.
+    Options: option=value,value,... for the agent, any option of train and evaluate and any
+    parameter of an agent, such as agent=reactive_planner,sac,vfh,dwa room=paper_room,clutter
+    range_noise=0.05,0.3 k_ind=0.02,0.1 decisions=4000 sac.learning_rate=0.001 vfh.safety=0.1,0.2.
+    An agent's own options make combinations for it alone. The same command goes on where it was
+    stopped; more seeds and values may be added.
     """
 
     options: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
@@ -79,6 +81,7 @@ class Sweep:
         if self.jobs < 1:
             raise ConfigError(f"jobs {self.jobs}: must be 1 or more")
         grid = read_grid(self.options, self.grid, self.starts, self.seeds)
+        require_extras(grid)
         pool = self._pool()
         folder = output_file(f"{folder}/{TABLE}", "", ".parquet").parent
         with locked(folder):

@@ -69,17 +69,22 @@ def run_deep_training(
             log_folder=log_folder,
         )
     wall_s = time.perf_counter() - began
-    starts = len(test.scene.arena.starts)
     with screen.status("testing all starts"):
-        solved = sum(
-            run_episode(
-                test,
-                agent,
-                seed=stream(seed, _TEST, start),
-                start=start,
-                max_decisions=_TEST_DECISIONS,
-            ).reached
-            for start in range(starts)
-        )
-    report = {"solved": solved, "starts": starts, **asdict(training)}
+        solved = _solved(test, agent, seed)
+    report = {"solved": solved, "starts": len(test.scene.arena.starts), **asdict(training)}
     return {**report, "wall_s": round(wall_s, 3), "sim_s": round(training.sim_s, 3)}
+
+
+def _solved(test: PathFinding, agent: DeepAgent, seed: int) -> int:
+    """Return from how many starts of the room an agent finds the goal."""
+    episodes = (
+        run_episode(
+            test,
+            agent,
+            seed=stream(seed, _TEST, start),
+            start=start,
+            max_decisions=_TEST_DECISIONS,
+        )
+        for start in range(len(test.scene.arena.starts))
+    )
+    return sum(episode.reached for episode in episodes)

@@ -1,9 +1,25 @@
 """What the deep learners are trained with, found by a small search (docs/deep.md)."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar, Literal, TypeAlias
 
+from nomad_agents.baselines.way import require
+from nomad_mj.errors import ConfigError
+
 Algorithm = Literal["sac", "td3", "ppo"]
+_TINY = 1e-9  # what must be above 0
+_SHARED = {
+    "gamma": (0.0, 1.0),
+    "learning_rate": (_TINY, 1.0),
+    "goal_bonus": (0.0, inf),
+    "episode_decisions": (1.0, inf),
+}
+
+
+def _require_layers(hidden: tuple[int, ...]) -> None:
+    if not hidden or min(hidden) < 1:
+        raise ConfigError(f"hidden {','.join(map(str, hidden))}: layers must have 1 unit or more")
 
 
 @dataclass(frozen=True)
@@ -45,6 +61,18 @@ class _OffPolicy:
     goal_bonus: float = 2.0
     episode_decisions: int = 50
 
+    def __post_init__(self) -> None:
+        _require_layers(self.hidden)
+        require(
+            self,
+            **_SHARED,
+            batch_size=(1, inf),
+            buffer_size=(1, inf),
+            learning_starts=(0, inf),
+            gradient_steps=(1, inf),
+            tau=(0, 1),
+        )
+
 
 @dataclass(frozen=True)
 class SacSettings(_OffPolicy):
@@ -59,6 +87,10 @@ class SacSettings(_OffPolicy):
     algorithm: ClassVar[Algorithm] = "sac"
     entropy: float = 0.05
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require(self, entropy=(_TINY, inf))
+
 
 @dataclass(frozen=True)
 class Td3Settings(_OffPolicy):
@@ -72,6 +104,10 @@ class Td3Settings(_OffPolicy):
 
     algorithm: ClassVar[Algorithm] = "td3"
     exploration: float = 0.3
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require(self, exploration=(0, inf))
 
 
 @dataclass(frozen=True)
@@ -103,6 +139,18 @@ class PpoSettings:
     spread: float = 0.5
     goal_bonus: float = 2.0
     episode_decisions: int = 50
+
+    def __post_init__(self) -> None:
+        _require_layers(self.hidden)
+        require(
+            self,
+            **_SHARED,
+            batch_size=(2, inf),  # advantages are normalised within a batch
+            rollout=(2, inf),
+            epochs=(1, inf),
+            gae_lambda=(0, 1),
+            spread=(_TINY, inf),
+        )
 
 
 DeepSettings: TypeAlias = SacSettings | Td3Settings | PpoSettings

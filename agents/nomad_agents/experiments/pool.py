@@ -8,7 +8,9 @@ from collections import Counter, deque
 from collections.abc import Callable, Generator, Hashable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from typing import TypeVar
+from typing import Generic, TypeVar
+
+from typing_extensions import Self
 
 from nomad_mj.errors import WorkerError
 
@@ -28,6 +30,49 @@ def _follow_parent() -> None:
     if parent is not None:
         parent.join()
         os._exit(1)  # files are written whole or not at all: nothing is lost but this run
+
+
+class _Crew(Generic[Item, Done]):
+    """Pools of one process each: if one breaks, it is known at what, and the others go on.
+
+    Left with an exception, Ctrl-C included, it ends its processes at once.
+    """
+
+    def __init__(self, work: Callable[[Item], Done], size: int) -> None:
+        self._work = work
+        self._idle = [_one_process() for _ in range(size)]
+        self._busy: dict[Future[Done], tuple[ProcessPoolExecutor, Item]] = {}
+
+    @property
+    def busy(self) -> bool:
+        """Whether anything is under way."""
+        return bool(self._busy)
+
+    def take_from(self, todo: deque[Item]) -> None:
+        """Let idle processes begin what is to be done, as far as they go round."""
+        while todo and self._idle:
+            pool, item = self._idle.pop(), todo.popleft()
+            self._busy[pool.submit(self._work, item)] = pool, item
+
+    def finished(self) -> Generator[tuple[Item, Future[Done]], None, None]:
+        """Wait until an item is over; yield those that are, a new process for each killed one."""
+        for future in wait(self._busy, return_when=FIRST_COMPLETED).done:
+            pool, item = self._busy.pop(future)
+            if isinstance(future.exception(), BrokenProcessPool):
+                pool.shutdown()
+                pool = _one_process()
+            self._idle.append(pool)
+            yield item, future
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if kind is not None:
+            for process in multiprocessing.active_children():
+                process.terminate()  # nobody who interrupts wants to wait for the present runs
+        for pool in [*self._idle, *(pool for pool, _ in self._busy.values())]:
+            pool.shutdown(cancel_futures=True)
 
 
 def _one_process() -> ProcessPoolExecutor:
@@ -61,34 +106,18 @@ def do_in_processes(
     """
     todo = deque(items)
     killed: Counter[Item] = Counter()
-    # A pool of one process each: if one breaks, it is known at what, and the others go on.
-    idle = [_one_process() for _ in range(min(jobs, len(items)))]
-    busy: dict[Future[Done], tuple[ProcessPoolExecutor, Item]] = {}
-    try:
-        while todo or busy:
-            while todo and idle:
-                pool, item = idle.pop(), todo.popleft()
-                busy[pool.submit(work, item)] = pool, item
-            for future in wait(busy, return_when=FIRST_COMPLETED).done:
-                pool, item = busy.pop(future)
-                idle.append(pool)
+    with _Crew(work, min(jobs, len(items))) as crew:
+        while todo or crew.busy:
+            crew.take_from(todo)
+            for item, future in crew.finished():
                 try:
                     done = future.result()
                 except BrokenProcessPool:
-                    pool.shutdown()
-                    idle[-1] = _one_process()
                     killed[item] += 1
                     if killed[item] < TRIES:
                         todo.append(item)
                     continue
                 yield item, done
-    except BaseException:
-        for process in multiprocessing.active_children():
-            process.terminate()  # nobody who interrupts wants to wait for the present runs
-        raise
-    finally:
-        for pool in [*idle, *(pool for pool, _ in busy.values())]:
-            pool.shutdown(cancel_futures=True)
     refuse_lost(killed)
 
 

@@ -139,20 +139,34 @@ def _store(result: Result, folder: Path) -> None:
     write_atomically(folder / result.run.file_name, lambda file: file.write(text))
 
 
-def describe_machine(wall: float) -> Row:
+class Stopwatch:
+    """Measures a run in a process of its own: by the clock, and what this process computed."""
+
+    def __init__(self) -> None:
+        self._wall, self._cpu = time.perf_counter(), time.process_time()
+
+    def read(self) -> Row:
+        """Return the seconds since it was made: ``wall_s``; ``cpu_s``, of all cores together."""
+        return {
+            "wall_s": round(time.perf_counter() - self._wall, 3),
+            "cpu_s": round(time.process_time() - self._cpu, 3),
+        }
+
+
+def describe_machine(stopwatch: Stopwatch) -> Row:
     """Return where and with what a run was done, and how long it took [s]."""
     return {
         "system": platform.platform(),
         "processor": platform.machine(),
         "python": platform.python_version(),
-        "wall_s": round(wall, 3),
+        **stopwatch.read(),
     }
 
 
 def _timed(work: Callable[[Run, Path], Result], folder: Path, run: Run) -> Result:
-    began = time.perf_counter()
+    stopwatch = Stopwatch()
     result = work(run, folder)
-    result.machine |= describe_machine(time.perf_counter() - began)
+    result.machine |= describe_machine(stopwatch)
     _store(result, folder)
     return result
 

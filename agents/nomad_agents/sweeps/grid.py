@@ -1,13 +1,21 @@
-"""A grid: some options with some values each; every combination, with every seed, is a run."""
+"""A grid: some options with some values each; every combination, with every seed, is a run.
+
+An agent's own options make combinations for that agent only: with ``agent=vfh,dwa`` and
+``vfh.safety=0.1,0.2`` there are three, and in dwa's the value of ``vfh.safety`` is None.
+"""
 
 import csv
 import itertools
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from nomad_agents.sweeps.options import (
+    AGENT,
+    USUAL_AGENT,
+    Option,
     Value,
     catalogue,
     find_option,
@@ -16,7 +24,8 @@ from nomad_agents.sweeps.options import (
 from nomad_mj.errors import ConfigError
 from nomad_mj.values import read_yaml
 
-Cell = tuple[tuple[str, Value], ...]
+Cell = tuple[tuple[str, Value | None], ...]
+_Pick = tuple[int, Value | None]  # number of a value, and the value
 LARGEST = 1_000_000  # runs
 
 
@@ -32,12 +41,27 @@ class SweepRun(NamedTuple):
 
 def describe(cell: Cell) -> str:
     """Return a combination in words."""
-    return ", ".join(f"{name}={show(value)}" for name, value in cell)
+    return ", ".join(f"{name}={show(value)}" for name, value in cell if value is not None)
 
 
-def show(value: Value) -> str:
-    """Return a value as it is typed."""
+def show(value: Value | None) -> str:
+    """Return a value as it is typed, a dash for none."""
+    if value is None:
+        return "-"
     return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def meant(cell: Cell) -> Cell:
+    """Return a combination without values of options that its agent does not have."""
+    agent, known = dict(cell).get(AGENT), catalogue()
+    if agent is None:
+        return cell
+    return tuple((n, value if _has(known, agent, n) else None) for n, value in cell)
+
+
+def _has(known: Mapping[str, Option], agent: Value, name: str) -> bool:
+    """Return whether an agent has an option; what is no option is everyone's."""
+    return name not in known or known[name].is_of(agent)
 
 
 @dataclass(frozen=True)
@@ -63,8 +87,26 @@ class Grid:
     def cells(self) -> list[Cell]:
         """Return all combinations; the last option's values take turns first."""
         names = [name for name, _ in self.axes]
-        every = itertools.product(*(values for _, values in self.axes))
-        return [tuple(zip(names, values, strict=True)) for values in every]
+        found = [picks for choices in self._choices() for picks in itertools.product(*choices)]
+        found.sort(key=lambda picks: [number for number, _ in picks])
+        return [tuple(zip(names, (value for _, value in picks), strict=True)) for picks in found]
+
+    def _choices(self) -> list[list[list[_Pick]]]:
+        """Return, for each agent, the values of each option, with their numbers."""
+        agents = dict(self.axes).get(AGENT, ())
+        if not agents:
+            return [[[*enumerate(values)] for _, values in self.axes]]
+        known = catalogue()
+
+        def picks(name: str, values: tuple[Value, ...], which: int) -> list[_Pick]:
+            if name == AGENT:
+                return [(which, values[which])]
+            return [*enumerate(values)] if _has(known, agents[which], name) else [(0, None)]
+
+        return [
+            [picks(name, values, which) for name, values in self.axes]
+            for which in range(len(agents))
+        ]
 
     def runs(self) -> list[SweepRun]:
         """Return all runs, seed by seed: who stops early has all combinations, over fewer seeds."""
@@ -72,20 +114,17 @@ class Grid:
         return [SweepRun(cell, seed) for seed in range(self.seeds) for cell in cells]
 
     def __len__(self) -> int:
-        count = self.seeds
-        for _, values in self.axes:
-            count *= len(values)
-        return count
+        return self.seeds * sum(math.prod(map(len, each)) for each in self._choices())
 
     def probes(self) -> list[Cell]:
-        """Return combinations in which every value is met once, the others being the first."""
-        first = {name: values[0] for name, values in self.axes}
-        others = [
-            tuple({**first, name: value}.items())
-            for name, values in self.axes
-            for value in values[1:]
-        ]
-        return [tuple(first.items()), *others]
+        """Return combinations in which every value is met once, most others being the first."""
+        met: set[tuple[str, Value | None]] = set()
+        found: list[Cell] = []
+        for cell in self.cells():
+            if not met.issuperset(cell):
+                met.update(cell)
+                found.append(cell)
+        return found
 
 
 def read_grid(words: Sequence[str], path: str, starts: str, seeds: int) -> Grid:
@@ -124,10 +163,22 @@ def read_grid(words: Sequence[str], path: str, starts: str, seeds: int) -> Grid:
         axes[option.name] = _distinct(option.name, (read_value(option, each) for each in values))
     if "starts" not in axes:
         axes["starts"] = (starts,)
+    _require_owners(axes)
     grid = Grid(tuple(axes.items()), seeds)
     if len(grid) > LARGEST:
         raise ConfigError(f"sweep: {len(grid)} runs; at most {LARGEST} can be swept at once")
     return grid
+
+
+def _require_owners(axes: Mapping[str, tuple[Value, ...]]) -> None:
+    """Raise ConfigError for an option that no agent of a grid has."""
+    known, agents = catalogue(), axes.get(AGENT, (USUAL_AGENT,))
+    for name in axes:
+        if not any(known[name].is_of(agent) for agent in agents):
+            raise ConfigError(
+                f"sweep: {name} is an option of {', '.join(known[name].agents)}, not of "
+                f"{', '.join(map(show, agents))}; choose with agent=..."
+            )
 
 
 def _split(word: str) -> tuple[str, list[Any]]:

@@ -3,31 +3,64 @@
 import difflib
 import math
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass
 from functools import cache
 from typing import Any, Literal, NamedTuple, get_args, get_origin, get_type_hints
 
+from nomad_agents.baselines import Planner, RandomMoves, Straight
 from nomad_agents.cli.task_options import TaskOptions
-from nomad_agents.reactive_planner import ReactivePlannerConfig
-from nomad_agents.registry import find_config
+from nomad_agents.deep import LEARNERS as DEEP
+from nomad_agents.learners import LEARNERS
+from nomad_agents.reactive_planner import ReactivePlanner, ReactivePlannerConfig
+from nomad_agents.registry import AGENTS, SETTINGS, find_config
 from nomad_agents.training import TrainingConfig
 from nomad_mj.errors import ConfigError
+from nomad_mj.perception import OBSERVATIONS, Observation
 
 Value = bool | int | float | str
-AGENT, CONFIG, STARTS, DECISIONS = "agent", "config", "starts", "evaluate.max_decisions"
-_TRAIN = "train."
+AGENT, CONFIG, STARTS, MAX_DECISIONS = "agent", "config", "starts", "evaluate.max_decisions"
+OBSERVATION, DECISIONS = "observation", "decisions"
+TRAIN = "train."
+USUAL_AGENT = ReactivePlanner.name
 _NOT_SWEPT = ("seed", "starts")  # of a training: --seeds, and the room's
 _SCALARS = (bool, int, float, str)
-_MEANT = {bool: "true or false", int: "a whole number", float: "a number"}
+_SIZES = tuple[int, ...]
+_MEANT = {
+    bool: "true or false",
+    int: "a whole number",
+    float: "a number",
+    _SIZES: "whole numbers such as 64,64",
+}
+_BLIND = (Straight.name, RandomMoves.name)  # no configuration changes what they do
 
 
 class Option(NamedTuple):
-    """An option: its name in a grid, the part that it belongs to, its type and usual value."""
+    """An option of a grid.
+
+    Attributes
+    ----------
+    name : str
+        In a grid.
+    part : str
+        Where it belongs: to the task, the run as a whole, the training of the reactive planner, the
+        configuration, or an agent's own settings.
+    kind : type
+        Of its values; tuples of numbers are text in a grid.
+    usual : Value
+        What holds where it is not given.
+    agents : tuple of str
+        Who has it; everyone if empty, checkpoints too.
+    """
 
     name: str
-    part: Literal["task", "run", "train", "agent"]
+    part: Literal["task", "run", "train", "config", "own"]
     kind: Any
     usual: Value
+    agents: tuple[str, ...] = ()
+
+    def is_of(self, agent: Value) -> bool:
+        """Return whether an agent has it."""
+        return not self.agents or agent in self.agents
 
 
 def _leaves(kind: type[Any], usual: Any, prefix: str = "") -> list[tuple[str, Any, Value]]:
@@ -39,6 +72,8 @@ def _leaves(kind: type[Any], usual: Any, prefix: str = "") -> list[tuple[str, An
             found += _leaves(type(value), value, f"{name}.")
         elif hints[each.name] in _SCALARS or get_origin(hints[each.name]) is Literal:
             found.append((name, hints[each.name], value))
+        elif hints[each.name] == _SIZES:
+            found.append((name, _SIZES, ",".join(map(str, value))))
     return found
 
 
@@ -46,24 +81,49 @@ def _leaves(kind: type[Any], usual: Any, prefix: str = "") -> list[tuple[str, An
 def catalogue() -> Mapping[str, Option]:
     """Return all options by name.
 
-    Those of the command line and the agent's parameters are called as they are there; what both
-    training and evaluation have, ``max_decisions``, begins with ``train.`` or ``evaluate.``.
+    Those of the command line and the parameters of a configuration are called as they are there;
+    what both training and evaluation have, ``max_decisions``, begins with ``train.`` or
+    ``evaluate.``, and what only one agent is told with its name, ``sac.`` or ``vfh.``.
     """
     task = [Option(n, "task", k, v) for n, k, v in _leaves(TaskOptions, TaskOptions())]
-    run = [
-        Option(AGENT, "run", str, "reactive_planner"),
-        Option(CONFIG, "run", str, "faithful"),
-        Option(STARTS, "run", str, "50"),
-        Option(DECISIONS, "run", int, 100),
-    ]
     train = [
-        Option(f"{_TRAIN}{n}" if n == "max_decisions" else n, "train", k, v)
+        Option(f"{TRAIN}{n}" if n == "max_decisions" else n, "train", k, v, (USUAL_AGENT,))
         for n, k, v in _leaves(TrainingConfig, TrainingConfig())
         if n not in _NOT_SWEPT
     ]
     usual = find_config("faithful")
-    agent = [Option(n, "agent", k, v) for n, k, v in _leaves(ReactivePlannerConfig, usual)]
-    return {each.name: each for each in (*task, *run, *train, *agent)}
+    config = [
+        Option(n, "config", k, v, _who_reads(n))
+        for n, k, v in _leaves(ReactivePlannerConfig, usual)
+    ]
+    settings = {**SETTINGS, **{name: made() for name, made in DEEP.items()}}
+    own = [
+        Option(n, "own", k, v, (agent,))
+        for agent, value in settings.items()
+        for n, k, v in _leaves(type(value), value, f"{agent}.")
+    ]
+    return {each.name: each for each in (*task, *_of_runs(), *train, *config, *own)}
+
+
+def _of_runs() -> list[Option]:
+    """Return what is neither of the task nor a parameter."""
+    by_budget = tuple(n for n, each in LEARNERS.items() if each.learns and n != USUAL_AGENT)
+    return [
+        Option(AGENT, "run", str, USUAL_AGENT),
+        Option(CONFIG, "run", str, "faithful", _who_reads("situation.")),
+        Option(STARTS, "run", str, "50"),
+        Option(MAX_DECISIONS, "run", int, 100),
+        Option(OBSERVATION, "run", Observation, OBSERVATIONS[0], tuple(DEEP)),
+        Option(DECISIONS, "run", int, 10_000, by_budget),
+    ]
+
+
+def _who_reads(name: str) -> tuple[str, ...]:
+    """Return the agents that a field of the configuration makes a difference to."""
+    part = name.partition(".")[0]
+    if part in ("situation", "action"):
+        return tuple(agent for agent in AGENTS if agent not in _BLIND)
+    return (USUAL_AGENT, Planner.name) if part == "planner" else (USUAL_AGENT,)
 
 
 def find_option(name: str) -> Option:
@@ -83,6 +143,8 @@ def find_option(name: str) -> Option:
 
 def read_value(option: Option, given: Any) -> Value:
     """Return a value of an option, given as text or as YAML has it; ConfigError if it is none."""
+    if option.kind == _SIZES and isinstance(given, list):
+        given = ",".join(map(str, given))  # pyright: ignore[reportUnknownArgumentType]
     text = str(given).strip()
     if isinstance(given, (*_SCALARS,)):
         if option.kind is bool and text.lower() in ("true", "false"):
@@ -95,6 +157,8 @@ def read_value(option: Option, given: Any) -> Value:
         if option.kind is str:
             return text
         try:
+            if option.kind == _SIZES:
+                return ",".join(str(size) for size in sizes(text))
             number = option.kind(text) if option.kind is not bool else math.nan
             if math.isfinite(number):
                 return number
@@ -104,47 +168,6 @@ def read_value(option: Option, given: Any) -> Value:
     raise ConfigError(f"sweep: {option.name} {text[:60]!r}: must be {meant}")
 
 
-class Settings(NamedTuple):
-    """What the options of one run come to."""
-
-    task: TaskOptions
-    config: ReactivePlannerConfig
-    training: TrainingConfig
-    agent: str
-    starts: str
-    max_decisions: int
-
-
-def settle(values: Mapping[str, Value], seed: int) -> Settings:
-    """Return what some options come to with a seed, all others being as usual.
-
-    Raises
-    ------
-    NomadError
-        Values that make no sense.
-    """
-    known = catalogue()
-    parts: dict[str, dict[str, Value]] = {part: {} for part in ("task", "run", "train", "agent")}
-    for name, value in values.items():
-        parts[known[name].part][name.removeprefix(_TRAIN)] = value
-    run: dict[str, Any] = {
-        name: parts["run"].get(name, known[name].usual)
-        for name in (AGENT, CONFIG, STARTS, DECISIONS)
-    }
-    config = find_config(run[CONFIG])
-    for name, value in parts["agent"].items():
-        config = _replaced(config, name, value)
-    task, train = TaskOptions(**_any(parts["task"])), TrainingConfig(seed, **_any(parts["train"]))
-    return Settings(task, config, train, run[AGENT], run[STARTS], run[DECISIONS])
-
-
-def _any(values: dict[str, Value]) -> dict[str, Any]:
-    return {**values}
-
-
-def _replaced(config: Any, name: str, value: Value) -> Any:
-    """Return a configuration in which the field of a dotted name is another."""
-    first, _, rest = name.partition(".")
-    return replace(
-        config, **{first: _replaced(getattr(config, first), rest, value) if rest else value}
-    )
+def sizes(text: str) -> tuple[int, ...]:
+    """Return the whole numbers of a text such as ``64,64``; ValueError if it is none."""
+    return tuple(int(part) for part in text.split(","))

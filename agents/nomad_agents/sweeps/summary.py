@@ -1,6 +1,6 @@
 """What a sweep has found: each combination's numbers over its seeds, as a table and as figures."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from nomad_agents.experiments.figures.sweep import Panel, Series, draw_sweep
 from nomad_agents.experiments.statistics import spread
 from nomad_agents.experiments.tables import TextTable, mean_cell, median_cell
-from nomad_agents.sweeps.grid import Cell, Grid, show
+from nomad_agents.sweeps.grid import Cell, Grid, meant, show
 from nomad_agents.sweeps.options import Value
 from nomad_agents.sweeps.store import Store
 from nomad_mj.errors import ConfigError
@@ -90,7 +90,8 @@ def draw(store: Store, metrics: Sequence[str], folder: Path) -> tuple[list[Path]
     """Draw a figure for each metric, ``sweep_METRIC``; return the PNG files and panels left out.
 
     Along the axis below goes the first option of numbers, or the first of all; in colours the
-    first of few values among the others; the rest is panels side by side.
+    first of few values among the others; the rest is panels side by side. What an agent is not
+    told makes no difference to it: it is drawn alike at all values.
     """
     grid = store.grid
     values = dict(grid.axes)
@@ -103,7 +104,7 @@ def draw(store: Store, metrics: Sequence[str], folder: Path) -> tuple[list[Path]
     for metric in metrics:
         panels = [
             Panel(
-                ", ".join(f"{name} = {show(value)}" for name, value in panel),
+                ", ".join(f"{name} = {show(value)}" for name, value in panel if value is not None),
                 [
                     Series(show(one) if colour else "", _points(store, metric, below, panel, extra))
                     for one in values.get(colour, ("",))
@@ -120,7 +121,7 @@ def draw(store: Store, metrics: Sequence[str], folder: Path) -> tuple[list[Path]
 
 
 def _points(
-    store: Store, metric: str, below: str, panel: Cell, extra: dict[str, Value]
+    store: Store, metric: str, below: str, panel: Cell, extra: Mapping[str, Value]
 ) -> list[FloatArray]:
     """Return the runs' numbers at each value of the option that goes along the axis."""
     fixed = {**dict(panel), **extra}
@@ -128,7 +129,7 @@ def _points(
     found: list[FloatArray] = []
     for value in dict(store.grid.axes)[below]:
         cell = tuple({**single, **fixed, below: value}.items())
-        found.append(column(store, cell, metric))
+        found.append(column(store, meant(cell), metric))
     return found
 
 

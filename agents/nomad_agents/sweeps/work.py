@@ -1,20 +1,21 @@
-"""What a run of a sweep does: train an agent, then evaluate it; and what is checked before."""
+"""What a run of a sweep does: let an agent learn, then evaluate it; and what is checked before."""
 
 import platform
-import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, closing, nullcontext
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
-from nomad_agents.agent import Agent
+import nomad_mj
 from nomad_agents.evaluation import draw_starts, evaluate, read_starts, summarise
-from nomad_agents.experiments.learnt import learn
 from nomad_agents.experiments.measures import UNSEEN_SEED
-from nomad_agents.experiments.runs import PACKAGES, Row, describe_machine, digest
-from nomad_agents.reactive_planner import ReactivePlanner
-from nomad_agents.registry import AGENTS, find_agent
+from nomad_agents.experiments.runs import PACKAGES, Row, Stopwatch, describe_machine, digest
+from nomad_agents.learners import LEARNERS, Lesson
+from nomad_agents.registry import AGENTS, make_agent
 from nomad_agents.sweeps.grid import Cell, Grid, SweepRun, describe
-from nomad_agents.sweeps.options import AGENT, CONFIG, STARTS, Settings, catalogue, settle
+from nomad_agents.sweeps.options import AGENT, STARTS, USUAL_AGENT, Value
+from nomad_agents.sweeps.settings import Settings, settle
 from nomad_mj.assets import find_robot, find_room
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import ConfigError, NomadError, WorkerError
@@ -22,14 +23,15 @@ from nomad_mj.types import FloatArray
 
 MACHINE = "machine_"
 VERSIONS = "version_"
+_DEEP_PACKAGES = ("torch", "stable-baselines3")
 
 
 def do_run(wanted: Row, run: SweepRun) -> Row:
     """Return the numbers of a run, and under ``machine_...`` where and how long it was done.
 
-    An agent that learns is trained with the seed, then evaluated from starts that are the same for
-    all seeds and that no training sees; a checkpoint and an agent that does not learn are
-    evaluated.
+    An agent that learns does so with the seed, then it is evaluated from starts that are the same
+    for all seeds and that no training sees; a checkpoint and an agent that does not learn are
+    evaluated as they are.
 
     Parameters
     ----------
@@ -43,25 +45,28 @@ def do_run(wanted: Row, run: SweepRun) -> Row:
     WorkerError
         What is wrong with its options, and which they are.
     """
-    began = time.perf_counter()
+    stopwatch = Stopwatch()
     try:
-        _require_same(wanted, run)
         settings = settle(dict(run.cell), run.seed)
+        learner = settings.learner()
+        learner.require()
+        _require_same(wanted, run)
         with settings.task.path_finding() as env:
-            agent, row = _agent(env, settings)
+            agent, row = learner.learn(_lesson(env, settings))
             starts = _starts(env, settings.starts)
             seed = UNSEEN_SEED + run.seed
             trials = evaluate(env, agent, starts, seed, settings.max_decisions)
             row = dict(summarise(env, trials)) | row
     except NomadError as error:
         raise WorkerError(f"{run}: {error}") from None
-    machine = describe_machine(time.perf_counter() - began)
-    versions = {f"{VERSIONS}{name}": value for name, value in package_versions().items()}
+    machine = describe_machine(stopwatch)
+    packages = package_versions([settings.agent])
+    versions = {f"{VERSIONS}{name}": value for name, value in packages.items()}
     return row | versions | {f"{MACHINE}{name}": value for name, value in machine.items()}
 
 
 def _require_same(wanted: Row, run: SweepRun) -> None:
-    axes = tuple((name, (value,)) for name, value in run.cell)
+    axes = tuple((name, (value,)) for name, value in run.cell if value is not None)
     for kind, found in sources(Grid(axes, 1)).items():
         for name, value in found.items():
             if value != wanted[kind].get(name):
@@ -70,17 +75,22 @@ def _require_same(wanted: Row, run: SweepRun) -> None:
                 )
 
 
-def package_versions() -> dict[str, str]:
-    """Return the versions of the packages that numbers depend on."""
-    return {name: version(name) for name in PACKAGES}
+def package_versions(agents: Sequence[Value]) -> dict[str, str]:
+    """Return the versions of the packages that the numbers of some agents depend on."""
+    deep = any(learner.deep for name, learner in LEARNERS.items() if name in agents)
+    return {name: version(name) for name in (*PACKAGES, *(_DEEP_PACKAGES if deep else ()))}
 
 
-def _agent(env: PathFinding, settings: Settings) -> tuple[Agent, Row]:
-    """Return the agent to evaluate, and what its training took."""
-    agent = find_agent(settings.agent, env.scene.robot.layout, settings.config)
-    if not isinstance(agent, ReactivePlanner) or settings.agent not in AGENTS:
-        return agent, {}
-    return agent, learn(env, agent, settings.training)[0]
+def _lesson(env: PathFinding, settings: Settings) -> Lesson:
+    """Return what is to be learnt; the task is that of the evaluation, unless it is altered."""
+    task = settings.task.load_options()
+
+    def opened(**task_kwargs: Any) -> AbstractContextManager[PathFinding]:
+        if not task_kwargs:
+            return nullcontext(env)
+        return closing(nomad_mj.load("path_finding", **(task | task_kwargs)))
+
+    return Lesson(settings.variant(), settings.training.seed, settings.budget, opened, task)
 
 
 def _starts(env: PathFinding, starts: str) -> FloatArray:
@@ -100,15 +110,6 @@ def check_grid(grid: Grid, tell: Callable[[str], object]) -> None:
     NomadError
         The first mistake, and in which combination.
     """
-    names = dict(grid.axes)
-    stored = [str(agent) for agent in names.get(AGENT, ()) if agent not in AGENTS]
-    known = catalogue()
-    useless = [n for n in names if n == CONFIG or known[n].part in ("train", "agent")]
-    if stored and useless:
-        raise ConfigError(
-            f"sweep: checkpoint {stored[0]!r} has its own parameters and is not trained; leave out "
-            f"{', '.join(useless)}"
-        )
     for cell in grid.cells():
         _tell_where(cell, lambda cell: settle(dict(cell), 0))
     for number, cell in enumerate(grid.probes(), 1):
@@ -125,21 +126,36 @@ def _tell_where(cell: Cell, check: Callable[[Cell], object]) -> None:
 
 def _try(cell: Cell) -> None:
     settings = settle(dict(cell), 0)
+    learner = settings.learner()
     with settings.task.path_finding() as env:
-        find_agent(settings.agent, env.scene.robot.layout, settings.config)
+        if not learner.learns:
+            learner.learn(_lesson(env, settings))
+        elif settings.agent in AGENTS:
+            make_agent(settings.agent, env.scene.robot.layout, settings.config)
         _starts(env, settings.starts)
         env.reset(seed=0)
 
 
+def require_extras(grid: Grid) -> None:
+    """Raise ConfigError if an agent cannot learn before something is installed."""
+    for agent in _agents(grid):
+        if agent in LEARNERS:
+            LEARNERS[str(agent)].require()
+
+
 def sources(grid: Grid) -> Row:
     """Return what else numbers depend on: versions of packages, content of files."""
-    values = dict(grid.axes)
+    values, agents = dict(grid.axes), _agents(grid)
     task = settle({}, 0).task
     files = [find_room(str(v)) for v in values.get("room", (task.room,))]
     files += [find_robot(str(v)) for v in values.get("robot", (task.robot,))]
-    files += [Path(str(v)).expanduser() for v in values.get(AGENT, ()) if v not in AGENTS]
+    files += [Path(str(v)).expanduser() for v in agents if v not in LEARNERS]
     files += [Path(str(v)).expanduser() for v in values.get(STARTS, ()) if not str(v).isdigit()]
     return {
-        "packages": package_versions(),
+        "packages": package_versions(agents),
         "files": {path.name: digest(path) for path in files if path.is_file()},
     }
+
+
+def _agents(grid: Grid) -> tuple[Value, ...]:
+    return dict(grid.axes).get(AGENT, (USUAL_AGENT,))

@@ -6,10 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from nomad_agents.benchmark.figures.looks import look, spoken
+from nomad_agents.benchmark.figures.panels import draw_panels, panel_shape
 from nomad_agents.experiments.figures.style import grid, sheet
 from nomad_agents.experiments.statistics import Spread
-
-_COLUMNS = 3
 
 
 def draw_intervals(groups: Mapping[str, Mapping[str, Spread]], path: Path, score: str) -> None:
@@ -25,26 +24,18 @@ def draw_intervals(groups: Mapping[str, Mapping[str, Spread]], path: Path, score
         What is scored.
     """
     labels = list(dict.fromkeys(label for spreads in groups.values() for label in spreads))
-    columns = min(_COLUMNS, len(groups))
-    rows = -(-len(groups) // columns)
+    rows, columns = panel_shape(len(groups))
     width, height = 2.2 + 2.5 * columns, (0.8 + 0.26 * len(labels)) * rows + 0.4
     with sheet(path, width, height) as figure:
-        panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-        for axes in panels.flat[len(groups) :]:
-            axes.set_visible(False)
-        for axes, (title, spreads) in zip(panels.flat, groups.items(), strict=False):
+        panels = draw_panels(figure, list(groups), score)
+        for axes, spreads in zip(panels, groups.values(), strict=True):
             for label, over in spreads.items():
                 seen, place = look(label), labels.index(label)
                 axes.plot([over.low, over.high], [place] * 2, color=seen.colour, lw=5, alpha=0.35)
                 face = seen.colour if seen.filled else "white"
                 axes.plot(over.iqm, place, seen.mark, color=seen.colour, mfc=face, ms=7, mew=1.6)
-            axes.set_title(title)
             axes.set_xlim(-0.03, 1.03)
             axes.set_ylim(len(labels) - 0.4, -0.6)
             axes.set_yticks(np.arange(len(labels)), [spoken(label) for label in labels])
             axes.tick_params(axis="y", length=0)
             grid(axes, "x")
-        for number, axes in enumerate(panels.flat[: len(groups)]):
-            lowest = number + columns >= len(groups)
-            axes.tick_params(labelbottom=lowest)
-            axes.set_xlabel(score if lowest else "")

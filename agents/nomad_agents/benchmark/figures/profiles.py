@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from nomad_agents.benchmark.figures.looks import look, signs
+from nomad_agents.benchmark.figures.panels import draw_panels, panel_shape
 from nomad_agents.benchmark.profiles import Profile
 from nomad_agents.experiments.figures.style import grid, legend_below, sheet
 
-_COLUMNS = 3
 _PANEL, _LEGEND = (3.3, 2.7), 0.9  # [in]
 
 
@@ -23,15 +23,12 @@ def draw_profiles(groups: Mapping[str, Mapping[str, Profile]], path: Path, score
     score : str
         What is scored.
     """
-    columns = min(_COLUMNS, len(groups))
-    rows = -(-len(groups) // columns)
+    rows, columns = panel_shape(len(groups))
     labels = list(dict.fromkeys(label for profiles in groups.values() for label in profiles))
     width = max(_PANEL[0] * columns, 6.4)
     with sheet(path, width, _PANEL[1] * rows + _LEGEND) as figure:
-        panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-        for axes in panels.flat[len(groups) :]:
-            axes.set_visible(False)
-        for axes, (title, profiles) in zip(panels.flat, groups.items(), strict=False):
+        panels = draw_panels(figure, list(groups), f"{score} >")
+        for axes, profiles in zip(panels, groups.values(), strict=True):
             for label, profile in profiles.items():
                 seen = look(label)
                 axes.fill_between(
@@ -42,13 +39,8 @@ def draw_profiles(groups: Mapping[str, Mapping[str, Profile]], path: Path, score
                     profile.thresholds, profile.share, where="post", color=seen.colour,
                     ls=seen.style, lw=seen.width,
                 )  # fmt: skip
-            axes.set_title(title)
             axes.set_xlim(0, 1)
             axes.set_ylim(-0.02, 1.04)
             grid(axes, "both")
-        for number, axes in enumerate(panels.flat[: len(groups)]):
-            lowest = number + columns >= len(groups)
-            axes.tick_params(labelbottom=lowest)
-            axes.set_xlabel(f"{score} >" if lowest else "")
         figure.supylabel("share of runs above it", fontsize=12)
         legend_below(figure, signs(labels), 4 if columns > 2 else 3)

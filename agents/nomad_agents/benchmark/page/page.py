@@ -91,7 +91,7 @@ def _telling(part: Part) -> dict[str, object]:
 
 def _facts(results: Sequence[Result]) -> list[tuple[str, str]]:
     """Return where the numbers come from: (term, description)."""
-    seconds = sum(float(result.machine.get("wall_s", 0.0)) for result in results)
+    seconds = sum(float(result.machine.get("cpu_s", 0.0)) for result in results)
     seeds = sorted({result.run.seed for result in results})
     episodes = sum(len(result.episodes) for result in results)
     return [

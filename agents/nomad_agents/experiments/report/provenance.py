@@ -20,7 +20,7 @@ def provenance(study: Study, results: Sequence[Result]) -> list[tuple[str, str]]
         Of all experiments.
     """
     learners = sum(result.run.agent == LEARNER for result in results)
-    seconds = sum(float(result.machine.get("wall_s", 0.0)) for result in results)
+    seconds = sum(float(result.machine.get("cpu_s", 0.0)) for result in results)
     counts = f"{learners} of the learner, {len(results) - learners} of the baselines"
     seeds = "0" if study.seeds == 1 else f"0 to {study.seeds - 1}"
     return [

@@ -1,118 +1,59 @@
-"""How each agent of the benchmark comes to be: by learning, or at once.
-
-A new one is a class derived from `Learner` and a line where `LEARNERS` is made.
-"""
+"""The learners of this package: those that learn nothing, the reactive planner, deep ones."""
 
 import copy
-from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from contextlib import AbstractContextManager, closing
-from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from contextlib import closing
+from dataclasses import replace
+from typing import Any
 
 import cattrs
 
 from nomad_agents.agent import Agent
-from nomad_agents.benchmark.checks import Checks
-from nomad_agents.deep import LEARNERS as DEEP
 from nomad_agents.deep import DeepAgent, DeepSettings
 from nomad_agents.deep.environment import make_env
 from nomad_agents.deep.extra import require_extra
 from nomad_agents.deep.training import DeepTraining, train_deep
 from nomad_agents.experiments.learnt import learn
 from nomad_agents.experiments.runs import Row
-from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner
-from nomad_agents.registry import AGENTS, find_config, make_agent
+from nomad_agents.learners.learner import Learner, Lesson
+from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner, ReactivePlannerConfig
+from nomad_agents.registry import find_config, make_agent
 from nomad_agents.training import Training, TrainingConfig
-from nomad_mj.envs import PathFinding
-from nomad_mj.errors import UnknownNameError
 from nomad_mj.perception import OBSERVATIONS
 
 
-class Opener(Protocol):
-    """Opens the task to learn in; the caller closes it."""
+class Untaught(Learner):
+    """An agent of the registry that learns nothing.
 
-    def __call__(self, **task_kwargs: Any) -> AbstractContextManager[PathFinding]:
-        """Return path finding, with some options of `nomad_mj.load` in place of the task's."""
-        ...
-
-
-@dataclass(frozen=True)
-class Lesson:
-    """What is to be learnt, and with what.
-
-    Attributes
-    ----------
-    variant : str
-        One of the learner's.
-    seed : int
-        Of all randomness.
-    budget : int
-        Decisions of learning, at most.
-    open : Opener
-        The task.
-    task : dict
-        The same as arguments of `nomad_mj.load`, for those who make environments of their own.
-    checks : Checks
-        To be told how far learning is, whenever a check is due.
-    """
-
-    variant: str
-    seed: int
-    budget: int
-    open: Opener
-    task: Mapping[str, Any]
-    checks: Checks
-
-
-class Learner(ABC):
-    """How an agent comes to be.
-
-    Attributes
+    Parameters
     ----------
     name : str
-        As on the command line.
-    variants : tuple of str
-        What can follow it there after a colon; the first is meant where nothing does.
-    learns, deep : bool
-        Whether it learns; whether it takes hours to, and packages that are not always installed.
+        Of `registry.AGENTS`.
+    config : ReactivePlannerConfig, optional
+        In place of the variant's.
+    own : optional
+        In place of its entry in `registry.SETTINGS`.
     """
-
-    name: str
-    variants: tuple[str, ...]
-    learns: bool = True
-    deep: bool = False
-
-    @abstractmethod
-    def parameters(self, variant: str) -> Any:
-        """Return with what it learns, as data: a result of other values is stale."""
-
-    def require(self) -> None:
-        """Raise ConfigError if something must be installed first."""
-
-    @abstractmethod
-    def learn(self, lesson: Lesson) -> tuple[Agent, Row]:
-        """Return the agent that has learnt, and what it took, names beginning with ``learn_``."""
-
-
-class Untaught(Learner):
-    """An agent of the registry that learns nothing."""
 
     variants = tuple(CONFIGS)
     learns = False
 
-    def __init__(self, name: str) -> None:
+    def __init__(
+        self, name: str, config: ReactivePlannerConfig | None = None, own: object = None
+    ) -> None:
         self.name = name
+        self._config = config
+        self._own = own
 
     def parameters(self, variant: str) -> Any:
         """Return the configuration."""
-        return cattrs.unstructure(find_config(variant))
+        return cattrs.unstructure(self._config or find_config(variant))
 
     def learn(self, lesson: Lesson) -> tuple[Agent, Row]:
         """Return it as it is."""
         with lesson.open() as env:
             layout = env.scene.robot.layout
-        return make_agent(self.name, layout, find_config(lesson.variant)), {}
+        config = self._config or find_config(lesson.variant)
+        return make_agent(self.name, layout, config, self._own), {}
 
 
 class ReactionLearner(Learner):
@@ -120,6 +61,13 @@ class ReactionLearner(Learner):
 
     What it knows from the beginning is its planner, which it asks where it knows no reaction.
     Checked unaided, it trusts the nearest reaction there instead.
+
+    Parameters
+    ----------
+    config : ReactivePlannerConfig, optional
+        In place of the variant's.
+    training : TrainingConfig, optional
+        When to give up, in place of a budget of decisions; the seed is the lesson's.
     """
 
     name = ReactivePlanner.name
@@ -127,16 +75,25 @@ class ReactionLearner(Learner):
     _MOST_DECISIONS = 50  # a start of the room; three passes at least, mostly more
     _MOST_PASSES = 40
 
+    def __init__(
+        self, config: ReactivePlannerConfig | None = None, training: TrainingConfig | None = None
+    ) -> None:
+        self._config = config
+        self._training = training
+
     def parameters(self, variant: str) -> Any:
         """Return the configuration and when it gives up."""
-        given_up = [self._MOST_DECISIONS, self._MOST_PASSES]
-        return {**cattrs.unstructure(find_config(variant)), "given_up": given_up}
+        given_up: Any = [self._MOST_DECISIONS, self._MOST_PASSES]
+        if self._training is not None:
+            given_up = cattrs.unstructure(self._training)
+        return {**cattrs.unstructure(self._config or find_config(variant)), "given_up": given_up}
 
     def learn(self, lesson: Lesson) -> tuple[Agent, Row]:
         """Train until a test solves every start, or give up."""
         checks, latest = lesson.checks, Training()
         with lesson.open() as env:
-            agent = ReactivePlanner(env.scene.robot.layout, find_config(lesson.variant))
+            config = self._config or find_config(lesson.variant)
+            agent = ReactivePlanner(env.scene.robot.layout, config)
 
             def check(training: Training) -> None:
                 checks.take(copy.deepcopy(agent), unaided(agent), **_spent(training))
@@ -149,15 +106,20 @@ class ReactionLearner(Learner):
                     check(training)
 
             check(latest)
-            most = min(lesson.budget, self._MOST_DECISIONS * len(env.scene.arena.starts))
-            config = TrainingConfig(lesson.seed, max_passes=self._MOST_PASSES, max_decisions=most)
-            row, _ = learn(env, agent, config, watch)
+            row, _ = learn(env, agent, self._until(lesson, len(env.scene.arena.starts)), watch)
             if latest.decisions > checks.latest:  # it gave up within a pass
                 check(latest)
         row |= {f"learn_{name}": value for name, value in _spent(latest).items()}
         if row["learn_solved_all"]:
             row |= {"decisions_to_test": latest.decisions, "sim_s_to_test": latest.sim_s}
         return agent, row
+
+    def _until(self, lesson: Lesson, starts: int) -> TrainingConfig:
+        """Return when it gives up in a room of so many starts."""
+        if self._training is not None:
+            return replace(self._training, seed=lesson.seed)
+        most = min(lesson.budget, self._MOST_DECISIONS * starts)
+        return TrainingConfig(lesson.seed, max_passes=self._MOST_PASSES, max_decisions=most)
 
 
 def unaided(agent: ReactivePlanner) -> ReactivePlanner:
@@ -207,41 +169,3 @@ def _spent(training: Training | DeepTraining) -> dict[str, float]:
     """Return what learning has taken so far."""
     names = ("decisions", "sim_s", "virtual_collisions", "bumper_contacts")
     return {name: getattr(training, name) for name in names}
-
-
-LEARNERS: Mapping[str, Learner] = {
-    each.name: each
-    for each in (
-        *(Untaught(name) for name in AGENTS if name != ReactivePlanner.name),
-        ReactionLearner(),
-        *(DeepLearner(name, settings()) for name, settings in DEEP.items()),
-    )
-}
-
-
-def usual_agents() -> tuple[str, ...]:
-    """Return all agents that need no hours, the learners among them in all their variants."""
-    return tuple(
-        f"{each.name}:{variant}" if each.learns else each.name
-        for each in LEARNERS.values()
-        if not each.deep
-        for variant in (each.variants if each.learns else each.variants[:1])
-    )
-
-
-def find_learner(spec: str) -> tuple[Learner, str]:
-    """Return the learner and the variant that ``NAME`` or ``NAME:VARIANT`` means.
-
-    Raises
-    ------
-    UnknownNameError
-        There is no such agent or variant.
-    """
-    name, _, variant = spec.partition(":")
-    if name not in LEARNERS:
-        raise UnknownNameError("agent", name, LEARNERS)
-    learner = LEARNERS[name]
-    variant = variant or learner.variants[0]
-    if variant not in learner.variants:
-        raise UnknownNameError(f"variant of {name}", variant, learner.variants)
-    return learner, variant
