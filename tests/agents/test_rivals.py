@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from nomad_agents.agent import Agent
 from nomad_agents.baselines import (
@@ -113,6 +113,7 @@ def test_on_an_empty_map_they_go_straight_to_the_goal(name: str, seed: int) -> N
 @pytest.mark.parametrize("name", RIVALS)
 @settings(max_examples=60)
 @given(seed=SEEDS, density=st.floats(0.02, 0.15))
+@example(seed=40761, density=0.09982000000000427)  # two ways equally free
 def test_mirrored_worlds_give_mirrored_moves(name: str, seed: int, density: float) -> None:
     one, other = MAKERS[name](), MAKERS[name]()
     for number in range(3):  # what they remember is mirrored too
@@ -169,6 +170,23 @@ def test_a_box_ahead_is_passed_on_the_shorter_side() -> None:
     percept = Percept(np.zeros(26), box, np.array([4.0, 0.0]))
     for name in RIVALS:
         assert MAKERS[name]().act(percept, None).action[1] < 0, name
+
+
+def test_along_a_wall_the_virtual_force_field_keeps_its_distance_and_gets_round() -> None:
+    """Not a degree towards the wall at each move: the push of the wall must hold it off."""
+    agent, goal = MAKERS["potential"](), np.array([0.3, 4.0])
+    place = np.zeros(2)
+    for _ in range(60):
+        to_goal = goal - place
+        x, y = CENTRES[..., 0] + place[0], CENTRES[..., 1] + place[1]
+        wall = ((abs(x) < 2.5) & (y > 1.0) & (y < 1.4)).astype(np.float64)
+        move = move_of(agent, Percept(np.zeros(26), wall, to_goal))
+        place = place + move
+        inside = np.clip(place, [-2.5, 1.0], [2.5, 1.4])
+        assert np.hypot(*(place - inside)) > LAYOUT.radius + 0.1, place
+        if np.hypot(*(goal - place)) < 0.2:
+            return
+    raise AssertionError(f"still at {place}")
 
 
 def test_blocked_sectors_stay_blocked_between_the_thresholds() -> None:

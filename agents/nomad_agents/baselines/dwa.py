@@ -117,7 +117,10 @@ class DynamicWindow(ClassicalAgent[DwaConfig]):
             turn = np.abs(wrap_angle(headings - self._last))
         admissible = lengths <= free[:, None]
         if not admissible.any():  # as far as it goes, where it goes farthest
-            best = int(np.argmax(free))
+            # Of ways equally free but for rounding, the one nearest to the goal's: the same on
+            # either hand.
+            freest = free >= free.max() - 1e-9
+            best = int(np.argmin(np.where(freest, np.abs(self._offsets), np.inf)))
             return float(headings[best]), max(float(free[best]), BLOCKED)
         within = admissible & (turn <= config.turn)[:, None]
         admissible = within if within.any() else admissible

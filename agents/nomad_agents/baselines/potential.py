@@ -7,13 +7,15 @@ Every occupied cell pushes the robot away, by its certainty and the inverse squa
 the goal pulls with a constant force; the robot drives along the sum. The authors damp what would
 make it swing: a cell pushes less the less the robot drives at it. Where the force turns it away
 from the goal by more than a right angle, it is about to be trapped in a local minimum, and follows
-the wall until the goal is ahead again.
+the wall until the goal is ahead again: the goal's pull gives way to one along and into the wall,
+against which the wall's push keeps the robot at its distance.
 
 What is adapted, and why:
 
 - The authors steer some ten times a second while the robot drives. Here a decision is a move, so
   it is short where forces act on the robot: the more so the more squarely they oppose it, as the
   authors slow down, and never into what the grid shows in its way.
+- Along a wall the push is not damped: that would vary with each move, and the robot would weave.
 - Their grid adds up readings as the robot drives. Here it is that of one round of readings.
 - The authors leave the wall when the robot faces the goal again. Here that would lead it back into
   the trap with the next move, so it must also have come nearer to the goal than it was there.
@@ -56,7 +58,8 @@ class PotentialConfig:
     slowest : float
         Moves are at least so long where forces act [m].
     follow : float
-        alpha: along a wall the robot heads so far from the direction in which it pushes [rad];
+        alpha: along a wall the pull is not the goal's, but so far from the direction in which the
+        wall pushes [rad], partly into it: push and pull balance at some distance from the wall.
         0: it does not follow walls.
     safety : float
         Distance to keep from the centres of occupied cells, beside the robot's radius [m].
@@ -69,7 +72,7 @@ class PotentialConfig:
     window: float = 1.0
     damping: float = 0.5
     slowest: float = 0.2
-    follow: float = np.deg2rad(95)
+    follow: float = np.deg2rad(145)
     safety: float = 0.2
     occupied: float = 0.5
 
@@ -119,8 +122,7 @@ class PotentialField(ClassicalAgent[PotentialConfig]):
         goal = percept.goal
         ahead = float(direction(goal))
         push, raw = self._repulsion(percept, ahead if self._last is None else self._last)
-        pull = goal / np.hypot(goal[0], goal[1])
-        heading = self._steer(float(direction(pull + push)), raw, goal)
+        heading = self._steer(goal, push, raw)
         heading, free = _clear(heading, self._occupied(percept), self._reach)
         length = self._length(heading, raw, longest)
         return heading, min(length, max(free, BLOCKED))
@@ -135,21 +137,26 @@ class PotentialField(ClassicalAgent[PotentialConfig]):
         damped = config.damping + (1 - config.damping) * np.maximum(facing, 0.0)
         return (certainty * damped) @ self._push, raw
 
-    def _steer(self, force: float, push: FloatArray, goal: FloatArray) -> float:
+    def _steer(self, goal: FloatArray, push: FloatArray, raw: FloatArray) -> float:
         """Return where to head [rad]: along the force, or along a wall where that leads back."""
-        if not self.config.follow or not push.any():
+        pull = goal / np.hypot(goal[0], goal[1])
+        force = float(direction(pull + push))
+        if not self.config.follow or not raw.any():
             self._side = 0
             return force
         ahead, distance = float(direction(goal)), float(np.hypot(goal[0], goal[1]))
         back = abs(float(wrap_angle(force - ahead))) > np.pi / 2
         if self._side and not back and distance < self._trapped_at:
             self._side = 0
-        pushed = float(direction(push))
+        pushed = float(direction(raw))
         if not self._side and back:
             self._trapped_at = distance
             before = ahead if self._last is None else self._last
             self._side = 1 if float(wrap_angle(before - pushed)) >= 0 else -1
-        return pushed + self._side * self.config.follow if self._side else force
+        if not self._side:
+            return force
+        along = pushed + self._side * self.config.follow
+        return float(direction(np.array([np.cos(along), np.sin(along)]) + raw))
 
     def _length(self, heading: float, push: FloatArray, longest: float) -> float:
         """Return how far to go [m]: the less, the more squarely the push opposes or aids it."""
