@@ -142,12 +142,14 @@ set_up() {
 install_extras() {
   if [ "$extras" -nt pyproject.toml ]; then return; fi
   say "installing the optional packages: PyTorch, Stable-Baselines3, Ray, Minari, TensorBoard"
+  # What is imported of so many files is compiled then; all of it would take half a minute now.
+  local pip=("$venv/bin/python" -m pip install --quiet --no-compile)
   if ! has "$venv/bin/python" torch; then
-    "$venv/bin/python" -m pip install --quiet --retries 0 --timeout 15 \
+    "${pip[@]}" --retries 0 --timeout 15 \
       --index-url https://download.pytorch.org/whl/cpu "torch==$torch" >/dev/null 2>&1 ||
-      "$venv/bin/python" -m pip install --quiet "torch==$torch" || true
+      "${pip[@]}" "torch==$torch" || true
   fi
-  "$venv/bin/python" -m pip install --quiet --editable '.[dev,all]' ||
+  "${pip[@]}" --editable '.[dev,all]' ||
     die "pip could not install the optional packages (see above); type the same make again"
   : >"$extras"
 }
