@@ -67,7 +67,7 @@ def _draw(axes: Axes, curve: Efficiency, seen: Look, last: float, *, thin: bool 
         100 * np.append(each, each[-1]) for each in (curve.low, curve.median, curve.high)
     )
     width = _THIN if thin else seen.width
-    axes.step(decisions, median, where="post", color=seen.colour, ls=seen.style, lw=width, zorder=4)
+    axes.plot(decisions, median, color=seen.colour, ls=seen.style, lw=width, zorder=4)
     if not thin:
         axes.fill_between(decisions, low, high, color=seen.colour, alpha=0.14, lw=0)
     if np.isfinite(curve.mastered) and not thin:
