@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from known_benchmark import made_up, made_up_run
 from nomad_agents.benchmark.efficiency import sample_efficiency
 from nomad_agents.benchmark.numbers import grouped, spread_of, strata
+from nomad_agents.benchmark.presentation import terminal_tables
 from nomad_agents.benchmark.profiles import performance_profile
 from nomad_agents.benchmark.tables import driving_table, glance_table, learning_table
 from nomad_agents.experiments.runs import Result
@@ -94,6 +95,15 @@ def test_tables() -> None:
     solved = learning.headings.index("runs that solve every start")
     assert [row[solved] for row in learning.rows] == ["6 of 6", "6 of 6"]
     assert learning_table(grouped(made_up(("convex",), ("straight",)))[0]) is None
+
+
+def test_a_terminal_is_shown_one_set_in_a_few_columns_and_several_at_a_glance() -> None:
+    (table,) = terminal_tables(grouped(made_up(("convex",), AGENTS)))
+    assert table.title == "convex" and [row[0] for row in table.rows] == list(AGENTS)
+    assert table.headings == ("", "goal reached", "SPL", "decisions until 90 %")
+    assert table.rows[0][3] == "" and table.rows[2][3] == "400"
+    several = terminal_tables(grouped(made_up(("convex", "wide"), AGENTS)))
+    assert [table.headings[1:] for table in several] == [("convex", "wide", "all runs")] * 2
 
 
 def test_a_number_that_no_run_ever_reaches_is_called_never() -> None:

@@ -9,7 +9,7 @@ from nomad_agents.evaluation import draw_starts
 from nomad_agents.experiments import measures
 from nomad_agents.experiments.experiment import LEARNER, PLANNER, Experiment, Study, Verdict
 from nomad_agents.experiments.learnt import train_room, training_run
-from nomad_agents.experiments.paper import EXPERIMENTS, concave, moving, places
+from nomad_agents.experiments.paper import EXPERIMENTS, concave, moving, places, robots
 from nomad_agents.experiments.reproduction import count_runs, trainings
 from nomad_agents.experiments.runs import Result, Run, do_runs
 
@@ -32,13 +32,15 @@ def trained(tmp_path_factory: pytest.TempPathFactory, small_room: Path) -> tuple
 
 @pytest.fixture
 def small(monkeypatch: pytest.MonkeyPatch, small_room: Path) -> None:
-    """Let all experiments make do with the small room, and with four unseen starts."""
+    """Let all experiments make do with the small room, and with two unseen starts."""
     monkeypatch.setattr(places, "PLACES", dict.fromkeys(places.PLACES, places.Place("", (-2, 3))))
     monkeypatch.setattr(concave, "ROOM", str(small_room))
     monkeypatch.setattr(moving, "_FILMS", 1)
+    cases = {case: (robot, str(small_room)) for case, (robot, _) in robots.CASES.items()}
+    monkeypatch.setattr(robots, "CASES", cases)
 
     def few(env: PathFinding, count: int, seed: int) -> FloatArray:
-        return draw_starts(env, min(count, 4), seed)
+        return draw_starts(env, min(count, 2), seed)
 
     monkeypatch.setattr(measures, "draw_starts", few)
 

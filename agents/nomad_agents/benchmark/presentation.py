@@ -12,6 +12,7 @@ from nomad_agents.benchmark.tables import (
     AT_A_GLANCE,
     driving_table,
     glance_table,
+    headline_table,
     learning_table,
 )
 from nomad_agents.checkpoint import write_atomically
@@ -25,6 +26,11 @@ TOLD = ("success_rate", "strict_success_rate", "spl", "barn_score")
 def glances(groups: Sequence[Group]) -> list[TextTable]:
     """Return the tables of all sets at a glance."""
     return [glance_table(groups, key) for key in AT_A_GLANCE]
+
+
+def terminal_tables(groups: Sequence[Group]) -> list[TextTable]:
+    """Return what a terminal has room for: one set's headlines, or all sets at a glance."""
+    return [headline_table(groups[0])] if len(groups) == 1 else glances(groups)
 
 
 def group_tables(group: Group) -> list[TextTable]:

@@ -44,6 +44,13 @@ LEARNING = (
     Column("bumper contacts while learning", "learn_bumper_contacts", 0, "median"),
     Column("minutes of computing", "wall_min", 1, "median"),
 )
+HEADLINE = (
+    Column("goal reached", "success_rate", 2, "mean"),
+    Column("SPL", "spl", 2, "mean"),
+    Column("decisions until 90 %", "decisions_to_90", 0, "median"),
+    Column("decisions until 90 % unaided", "unaided_decisions_to_90", 0, "median"),
+    Column("virtual collisions while learning", "learn_virtual_collisions", 0, "median"),
+)
 
 
 def glance_table(groups: Sequence[Group], key: str) -> TextTable:
@@ -58,6 +65,13 @@ def glance_table(groups: Sequence[Group], key: str) -> TextTable:
     names = [group.name for group in groups]
     headings = ("", *names, *(["all runs"] if len(groups) > 1 else []))
     return TextTable(AT_A_GLANCE[key], headings, tuple(rows))
+
+
+def headline_table(group: Group) -> TextTable:
+    """Return what matters most in one set, narrow enough for a terminal."""
+    every = [result for results in group.agents.values() for result in results]
+    columns = [column for column in HEADLINE if has(every, column.key)]
+    return TextTable(group.name, _headings(columns), _rows(group.agents, columns))
 
 
 def driving_table(group: Group) -> TextTable:

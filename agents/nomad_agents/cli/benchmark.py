@@ -8,7 +8,7 @@ from rich.console import Console
 
 from nomad_agents.benchmark.numbers import grouped
 from nomad_agents.benchmark.plan import Plan, plan_runs, require_extras
-from nomad_agents.benchmark.presentation import glances, group_tables, numbers, present
+from nomad_agents.benchmark.presentation import numbers, present, terminal_tables
 from nomad_agents.benchmark.run import BenchmarkRun, work
 from nomad_agents.benchmark.sets import SETS, TaskSet, find_set, room_sets
 from nomad_agents.cli.common import console, interruptible, output_file, print_json
@@ -78,15 +78,11 @@ class Benchmark:
             results = self._results(runs, folder, screen)
             if not results:
                 raise ConfigError(f"{folder} holds no such run; run without --only-read")
-            groups = grouped(results)
-            tables = glances(groups)
-            if len(groups) == 1:
-                tables = group_tables(groups[0])
-            for table in tables:
+            for table in terminal_tables(grouped(results)):
                 screen.print(as_rich(table))
             with screen.status("drawing"):
                 present(results, self._command(), folder.parent, page)
-        screen.print(f"Page: {page}", soft_wrap=True)
+        screen.print(f"All tables: {folder.parent / 'tables.md'}; page: {page}", soft_wrap=True)
         if self.json:
             print_json(numbers(results))
         return 0
