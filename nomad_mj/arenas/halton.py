@@ -58,9 +58,9 @@ def halton_starts(
     StartError
         If the goal is blocked or the room has not so many such places.
     """
-    low, high = np.reshape(plan.interior(0.0, goal).bounds, (2, 2))
     from scipy.stats import qmc  # takes half a second, and few ask for it
 
+    low, high = np.reshape(plan.interior(0.0, goal).bounds, (2, 2))
     points = low + (high - low) * qmc.Halton(2, scramble=False).random(_MOST_POINTS)
     region = plan.interior(radius, goal)
     starts = points[plan.suit(points, region, radius, clearance, goal, min_goal_distance)]

@@ -1,6 +1,7 @@
 """The standard sets: the same rooms again, every start solvable, no start in two roles."""
 
 from contextlib import closing
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
@@ -12,9 +13,9 @@ from nomad_agents.benchmark.plan import MOST_SEEDS, Plan, plan_runs
 from nomad_agents.benchmark.sets import SETS, Case, find_set, room_sets, write_room
 from nomad_agents.evaluation import draw_starts
 from nomad_agents.experiments.measures import UNSEEN_SEED, unseen_starts
-from nomad_agents.learners import LEARNERS, Lesson, find_learner, usual_agents
+from nomad_agents.learners import LEARNERS, Lesson, Untaught, find_learner, usual_agents
 from nomad_agents.reactive_planner import ReactivePlanner
-from nomad_agents.registry import find_config
+from nomad_agents.registry import SETTINGS, find_config
 from nomad_agents.training import Training, TrainingConfig, stream, train
 
 import nomad_mj
@@ -133,6 +134,15 @@ def test_parameters_tell_what_names_stand_for(tmp_path: Path) -> None:
     told = {(run.agent, run.condition): run.parameters() for run in runs}
     assert told["straight", "people"]["condition"]["moving_obstacles"]["pause"] == 2.0
     assert told["reactive_planner", "people"]["agent"]["k_dist"] == 1.0
+
+
+@pytest.mark.parametrize("name", SETTINGS)
+def test_results_of_an_agent_with_other_settings_are_stale(name: str) -> None:
+    learner, variant = find_learner(name)
+    usual = learner.parameters(variant)
+    assert usual["own"]["safety"] == SETTINGS[name].safety
+    other = Untaught(name, own=replace(SETTINGS[name], safety=0.3))
+    assert other.parameters(variant) == {**usual, "own": {**usual["own"], "safety": 0.3}}
 
 
 def test_rooms_of_ones_own_are_sets(small_room: Path) -> None:

@@ -16,7 +16,7 @@ from nomad_agents.experiments.learnt import learn
 from nomad_agents.experiments.runs import Row
 from nomad_agents.learners.learner import Learner, Lesson
 from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner, ReactivePlannerConfig
-from nomad_agents.registry import find_config, make_agent
+from nomad_agents.registry import SETTINGS, find_config, make_agent
 from nomad_agents.training import Training, TrainingConfig
 from nomad_mj.perception import OBSERVATIONS
 
@@ -42,11 +42,12 @@ class Untaught(Learner):
     ) -> None:
         self.name = name
         self._config = config
-        self._own = own
+        self._own = SETTINGS.get(name) if own is None else own
 
     def parameters(self, variant: str) -> Any:
-        """Return the configuration."""
-        return cattrs.unstructure(self._config or find_config(variant))
+        """Return the configuration, and what the agent is told beside it."""
+        config = cattrs.unstructure(self._config or find_config(variant))
+        return config if self._own is None else {**config, "own": cattrs.unstructure(self._own)}
 
     def learn(self, lesson: Lesson) -> tuple[Agent, Row]:
         """Return it as it is."""
