@@ -39,6 +39,10 @@ class TrainingConfig:
         A learning episode, a test episode is given up after so many decisions.
     starts : tuple of int
         Numbers of the room's starts to train on; all if empty.
+    whole_tests : bool
+        Whether a test tries every start, to tell how many are solved. Else it ends with the first
+        that is not, and before `min_passes` there is none: learning goes on to the same bits, in
+        little more than half of the time.
     """
 
     seed: int = 0
@@ -48,6 +52,7 @@ class TrainingConfig:
     episode_decisions: int = 100
     test_decisions: int = 50
     starts: tuple[int, ...] = ()
+    whole_tests: bool = True
 
     def __post_init__(self) -> None:
         if self.seed < 0:
@@ -154,7 +159,7 @@ def train(
                 _test(env, agent, config, training, starts)
             else:
                 _learn(env, agent, config, training, starts, watch)
-            _advance(training, len(starts), config.min_passes)
+            _advance(training, len(starts), config)
         except BaseException:  # half an episode learnt would not go on to the same bits
             vars(training).update(vars(before[0]))
             agent.network.restore(before[1])
@@ -213,16 +218,20 @@ def _test(
     training.sim_s += episode.duration
 
 
-def _advance(training: Training, starts: int, min_passes: int) -> None:
+def _advance(training: Training, starts: int, config: TrainingConfig) -> None:
     """Go on to the next start, to the test, or to the next pass."""
     training.next_start += 1
-    if training.next_start < starts:
+    failed = training.testing and training.solved < training.tested
+    if training.next_start < starts and (config.whole_tests or not failed):
         return
     training.next_start = 0
-    if training.testing:
-        training.done = training.solved == starts and training.passes >= min_passes
-        training.passes += not training.done
-    training.testing = not training.testing
+    enough = training.passes >= config.min_passes
+    if not training.testing and (enough or config.whole_tests):
+        training.testing = True
+        return
+    training.done = training.testing and training.solved == starts and enough
+    training.testing = False
+    training.passes += not training.done
 
 
 def training_report(env: PathFinding, agent: ReactivePlanner, training: Training) -> dict[str, Any]:

@@ -131,6 +131,39 @@ def test_a_pass_learns_from_every_start_then_tests_every_start(
     assert (report["solved"], report["starts"], report["passes"]) == (3, 3, 2)
 
 
+def test_short_tests_leave_learning_as_it_is(env: PathFinding, whole: Learnt) -> None:
+    agent, training = new(env)
+    train(env, agent, TrainingConfig(seed=1, whole_tests=False), training)
+    told = {"sim_s": whole[1].sim_s}  # of fewer tests
+    assert training.sim_s < whole[1].sim_s
+    assert state((agent, training)) | told == state(whole)
+
+
+def test_a_short_test_ends_with_the_first_start_it_loses(
+    env: PathFinding, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tried: list[tuple[bool, int]] = []
+    solved = iter([True, False] + [True] * 3)
+
+    def episode(env: PathFinding, agent: ReactivePlanner, **given: Any) -> Episode:
+        learning = given.get("explore") is not None
+        tried.append((learning, given["start"]))
+        return Episode(not learning and next(solved), 10, 7, 0, 0, 0, 1.0, 1.0, 0.1)
+
+    monkeypatch.setattr(module, "run_episode", episode)
+    agent, training = new(env)
+    train(env, agent, TrainingConfig(whole_tests=False), training)
+    learning = [(True, i) for i in range(3)]
+    assert tried == [
+        *learning,  # the test of the first pass would count for nothing
+        *learning,
+        *[(False, i) for i in range(2)],
+        *learning,
+        *[(False, i) for i in range(3)],
+    ]
+    assert training.done and (training.passes, training.solved) == (3, 3)
+
+
 @pytest.mark.parametrize("passes", [1, 2])
 def test_a_training_that_gives_up_counts_the_passes_it_made(
     env: PathFinding, monkeypatch: pytest.MonkeyPatch, passes: int

@@ -84,23 +84,26 @@ class ReactionLearner(Learner):
 
     def parameters(self, variant: str) -> Any:
         """Return the configuration and when it gives up."""
-        given_up: Any = [self._MOST_DECISIONS, self._MOST_PASSES]
+        given_up: Any = {"decisions_a_start": self._MOST_DECISIONS, "passes": self._MOST_PASSES}
         if self._training is not None:
             given_up = cattrs.unstructure(self._training)
         return {**cattrs.unstructure(self._config or find_config(variant)), "given_up": given_up}
 
     def learn(self, lesson: Lesson) -> tuple[Agent, Row]:
         """Train until a test solves every start, or give up."""
-        checks, latest = lesson.checks, Training()
+        checks, latest, learnt_s = lesson.checks, Training(), 0.0
         with lesson.open() as env:
             config = self._config or find_config(lesson.variant)
             agent = ReactivePlanner(env.scene.robot.layout, config)
 
             def check(training: Training) -> None:
-                checks.take(copy.deepcopy(agent), unaided(agent), **_spent(training))
+                spent = _spent(training) | {"sim_s": learnt_s}
+                checks.take(copy.deepcopy(agent), unaided(agent), **spent)
 
             def watch(training: Training) -> None:
-                nonlocal latest
+                nonlocal latest, learnt_s
+                if not latest.testing:  # tests cost no time of learning, as checks do not
+                    learnt_s += training.sim_s - latest.sim_s
                 latest = replace(training)
                 tested = training.next_start == 0 and not training.testing
                 if checks.due(training.decisions) or tested:
@@ -110,9 +113,11 @@ class ReactionLearner(Learner):
             row, _ = learn(env, agent, self._until(lesson, len(env.scene.arena.starts)), watch)
             if latest.decisions > checks.latest:  # it gave up within a pass
                 check(latest)
-        row |= {f"learn_{name}": value for name, value in _spent(latest).items()}
+        spent = _spent(latest) | {"sim_s": learnt_s}
+        row |= {f"learn_{name}": value for name, value in spent.items()}
+        del row["learn_solved"]  # of a test that may have ended with the first start it lost
         if row["learn_solved_all"]:
-            row |= {"decisions_to_test": latest.decisions, "sim_s_to_test": latest.sim_s}
+            row |= {"decisions_to_test": latest.decisions, "sim_s_to_test": learnt_s}
         return agent, row
 
     def _until(self, lesson: Lesson, starts: int) -> TrainingConfig:
@@ -120,7 +125,8 @@ class ReactionLearner(Learner):
         if self._training is not None:
             return replace(self._training, seed=lesson.seed)
         most = min(lesson.budget, self._MOST_DECISIONS * starts)
-        return TrainingConfig(lesson.seed, max_passes=self._MOST_PASSES, max_decisions=most)
+        passes = self._MOST_PASSES
+        return TrainingConfig(lesson.seed, max_passes=passes, max_decisions=most, whole_tests=False)
 
 
 def unaided(agent: ReactivePlanner) -> ReactivePlanner:
