@@ -113,7 +113,7 @@ def run_trial(
 ) -> Trial:
     """Run one greedy episode and measure it by the truth."""
     track: list[tuple[float, float]] = []
-    env.on_control_step = lambda _: track.append(env.physics.pose()[:2])
+    env.on_control_step = lambda: track.append(env.physics.pose()[:2])
     try:
         episode = run_episode(env, agent, seed=seed, start=start, max_decisions=max_decisions)
     finally:

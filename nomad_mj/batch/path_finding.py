@@ -67,8 +67,6 @@ class BatchPathFinding(BatchEnvironment):
         self._robot = worlds.tasks[0].scene.robot
         self._lookout = Lookout(self._robot.layout, self.config.motion)
         self._moves: dict[int, _Underway] = {}  # by world
-        self._watched: list[tuple[float, float]] = [(np.nan, np.nan)] * worlds.count
-        self._slack = np.zeros_like(worlds.ranges)
         self._ticks = np.zeros(worlds.count, dtype=np.intp)
         self._duration, self._driven, self._clearance = np.zeros((3, worlds.count))
         self._outcome = np.zeros(worlds.count, dtype=np.int32)
@@ -134,7 +132,7 @@ class BatchPathFinding(BatchEnvironment):
             self._begin(chosen[over])
         for world, move in asked.items():
             bumped = bool(self.worlds.bumpers[world].any())
-            odometry = self.worlds.odometry[world]
+            odometry = self.worlds.odometry[world].tolist()
             driving = Driving(move, self._robot, self._lookout.motion, odometry, bumped)
             self._moves[world] = _Underway(driving, move, goals[world].copy())
 
@@ -161,13 +159,11 @@ class BatchPathFinding(BatchEnvironment):
 
     def _free(self, worlds: list[int]) -> list[float]:
         """Return the shortest reading ahead of each of some worlds [m]."""
-        turned = [w for w in worlds if self._moves[w].driving.watched != self._watched[w]]
-        if turned:
-            watched = [self._moves[world].driving.watched for world in turned]
-            self._slack[turned] = self._lookout.slack(*np.array(watched).T)
-            for world, way in zip(turned, watched, strict=True):
-                self._watched[world] = way
-        return np.minimum.reduce(self.worlds.ranges[worlds] + self._slack[worlds], axis=1).tolist()
+        if not worlds:
+            return []
+        watched = np.array([self._moves[world].driving.watched for world in worlds])
+        slack = self._lookout.slacks(*watched.T)
+        return np.minimum.reduce(self.worlds.ranges[worlds] + slack, axis=1).tolist()
 
     def _drive(self, going: list[int], commands: FloatArray) -> None:
         """Advance worlds by a control step of their moves, given their commands (n, M)."""
@@ -182,7 +178,7 @@ class BatchPathFinding(BatchEnvironment):
         nearest = np.minimum.reduce(worlds.ranges[chosen], axis=1).tolist()
         bumped = np.logical_or.reduce(worlds.bumpers[chosen], axis=1).tolist()
         for world, near, touched in zip(going, nearest, bumped, strict=True):
-            travel, odometry = worlds.tasks[world].travel, worlds.odometry[world]
+            travel, odometry = worlds.tasks[world].travel, worlds.odometry[world].tolist()
             self._moves[world].driving.take_in(travel, odometry, near, touched)
 
     def _finish(self, world: int) -> None:

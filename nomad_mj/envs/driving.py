@@ -1,6 +1,8 @@
 """A move under way: what a control step takes and gives, for one robot or many side by side."""
 
 import math
+from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -10,6 +12,8 @@ from nomad_mj.motion import ActionSpec, MotionConfig, Outcome, displacement, rei
 from nomad_mj.robots import RobotDescription
 from nomad_mj.scene import CONTROL_TIMESTEP
 from nomad_mj.types import FloatArray, SensorLayout, Travel
+
+_TURN = 2 * math.pi
 
 
 class Move(NamedTuple):
@@ -58,28 +62,54 @@ class Lookout:
         self.motion = replace(
             config, security_distance=max(config.security_distance, 1.1 * nearest)
         )
-        self._bearings = np.concatenate([ring.bearings for ring in layout.rings])
-        self._ahead, self._beside = (
-            math.cos(min(angle + 1e-9, math.pi))
-            for angle in (config.ahead, max(config.ahead, math.pi / 2))
+        bearings = np.concatenate([ring.bearings for ring in layout.rings])
+        self._edges, self._table = _slacks(
+            bearings, config.ahead, max(config.ahead, math.pi / 2), self.motion.beside
         )
+        self._bounds: list[float] = self._edges.tolist()  # for one robot alone
 
-    def slack(self, heading: FloatArray | float, sensors: FloatArray | float) -> FloatArray:
-        """Return how much nearer things may be before each sensor, (..., C) [m]; infinite: behind.
+    def slack(self, heading: float, sensors: float) -> FloatArray:
+        """Return how much nearer things may be before each sensor, (C,) [m]; infinite: behind.
 
         Beside the robot, beyond `ahead`, that is `beside`: corners pass there between two sensors.
 
         Parameters
         ----------
-        heading : array (...)
+        heading : float
             Where the robot drives [rad].
-        sensors : array (...)
+        sensors : float
             Direction of the frame of its range sensors [rad].
         """
-        # By their cosines, which need not be brought into a half-turn first.
-        along = np.cos(self._bearings + np.asarray(sensors - heading)[..., None])
-        beside = np.where(along >= self._beside, self.motion.beside, np.inf)
-        return np.where(along >= self._ahead, 0.0, beside)
+        return self._table[bisect_right(self._bounds, (sensors - heading) % _TURN)]
+
+    def slacks(self, heading: FloatArray, sensors: FloatArray) -> FloatArray:
+        """Return the same for many robots, (n, C) [m], given (n,) and (n,)."""
+        turned = np.mod(sensors - heading, _TURN)
+        return self._table[np.searchsorted(self._edges, turned, side="right")]
+
+
+def _slacks(
+    bearings: FloatArray, ahead: float, aside: float, beside: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return between which directions of the sensors' frame slacks are the same, and which.
+
+    They change only where a sensor comes within `ahead` or `aside` of the way [rad].
+
+    Returns
+    -------
+    edges : array (K,)
+        Where they change, ascending in [0, 2 pi), against the way [rad].
+    table : array (K + 1, C)
+        Below the first of them, between each and the next, from the last on [m].
+    """
+    limits = np.minimum(np.array([ahead, aside]) + 1e-9, math.pi)
+    edges = np.unique(np.mod(np.concatenate([limits, -limits])[:, None] - bearings, _TURN))
+    bounds = np.array([0.0, *edges, _TURN])
+    middles = (bounds[1:] + bounds[:-1]) / 2
+    along = np.cos(bearings + middles[:, None])
+    near, far = np.cos(limits)
+    slack = np.where(along >= near, 0.0, np.where(along >= far, beside, np.inf))
+    return edges, slack
 
 
 class Driving:
@@ -93,7 +123,7 @@ class Driving:
         Which robot.
     motion : MotionConfig
         How carefully to move, as of a `Lookout`.
-    odometry : array (4,)
+    odometry : sequence of float, length 4
         As observed.
     bumped : bool
         Whether a bumper is touched already.
@@ -104,7 +134,7 @@ class Driving:
         move: FloatArray,
         robot: RobotDescription,
         motion: MotionConfig,
-        odometry: FloatArray,
+        odometry: Sequence[float],
         bumped: bool,
     ) -> None:
         x, y = move.tolist()
@@ -136,7 +166,9 @@ class Driving:
         command = self._move.command(self._travel, free, self._bumped)
         return None if self._move.done else command
 
-    def take_in(self, travel: Travel, odometry: FloatArray, nearest: float, bumped: bool) -> None:
+    def take_in(
+        self, travel: Travel, odometry: Sequence[float], nearest: float, bumped: bool
+    ) -> None:
         """Take in a control step: its way, the odometry, the shortest reading [m], contacts."""
         self._travel = travel = _facing(travel, odometry)
         self._bumped = bumped
@@ -149,7 +181,7 @@ class Driving:
         return Move(self._move.outcome, self._clearance, self._driven, self._ticks)
 
 
-def _facing(travel: Travel, odometry: FloatArray) -> Travel:
+def _facing(travel: Travel, odometry: Sequence[float]) -> Travel:
     """Return a way with the directions that odometry tells."""
-    _, _, heading, sensors = odometry.tolist()
+    _, _, heading, sensors = odometry
     return Travel(travel.forward, travel.sideways, heading, sensors)

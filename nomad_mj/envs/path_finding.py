@@ -80,12 +80,11 @@ class PathFinding(dm_env.Environment):
             raise ConfigError(f"time limit {time_limit}: must be above 0 s")
         self.motor = motor
         self.config = config or PathFindingConfig()
-        self.on_control_step: Callable[[dm_env.TimeStep], None] | None = None
+        self.on_control_step: Callable[[], None] | None = None
         self._time_limit = time_limit
         self._lookout = Lookout(self.scene.robot.layout, self.config.motion)
         self._over = True
         self._ticks = 0
-        self._inner: dm_env.TimeStep | None = None
 
     @property
     def scene(self) -> Scene:
@@ -116,23 +115,23 @@ class PathFinding(dm_env.Environment):
         self, seed: int | np.random.SeedSequence | None = None, start: Start = None
     ) -> dm_env.TimeStep:
         """Start a new episode; arguments and errors as of `MotorEnvironment.reset`."""
-        self._inner = self.motor.reset(seed, start)
+        told = self.motor.reset(seed, start).observation
         self._over = False
         self._ticks = 0
         nearest = float(self.motor.task.ranges.min())
-        return dm_env.restart(self._observe(Move(Outcome.NONE, nearest)))
+        return dm_env.restart(_with_move(told, Move(Outcome.NONE, nearest)))
 
     def step(self, action: Any) -> dm_env.TimeStep:
         """Carry out one move and return what became of it."""
-        if self._over or self._inner is None:
+        if self._over:
             return self.reset()
-        goal: FloatArray = self._inner.observation["goal"]
+        task = self.motor.task
+        goal = task.goal - task.odometry[:2]
         move = asked_move(action, goal, self.config.action)
         done = self._carry_out(move)
         self._ticks += done.ticks
         reward = reward_of(done, move, goal)
-        observation = self._observe(done)
-        task = self.motor.task
+        observation = _with_move(task.get_observation(self.physics), done)
         if task.reaches_goal(task.goal_distance(self.physics)):
             self._over = True
             return dm_env.termination(reward, observation)
@@ -143,36 +142,32 @@ class PathFinding(dm_env.Environment):
 
     def _carry_out(self, move: FloatArray) -> Move:
         """Drive a displacement (2,) [m]."""
-        assert self._inner is not None
-        task, lookout = self.motor.task, self._lookout
-        told = self._inner.observation
-        bumped = bool(told["bumpers"].any())
-        driving = Driving(move, self.scene.robot, lookout.motion, told["odometry"], bumped)
-        watched, slack = None, np.zeros(0)
+        motor, lookout = self.motor, self._lookout
+        task = motor.task
+        bumped = bool(np.count_nonzero(task.bumpers))
+        driving = Driving(move, self.scene.robot, lookout.motion, task.odometry, bumped)
         while True:
-            if driving.watched != watched:
-                watched = driving.watched
-                slack = lookout.slack(*watched)
+            slack = lookout.slack(*driving.watched)
             command = driving.command(float(np.minimum.reduce(task.ranges + slack)))
             if command is None:
                 return driving.result()
-            self._inner = self.motor.step(command)
-            told = self._inner.observation
-            bumped = bool(np.count_nonzero(told["bumpers"]))
+            motor.advance(command)
+            bumped = bool(np.count_nonzero(task.bumpers))
             nearest = float(np.minimum.reduce(task.ranges))
-            driving.take_in(task.travel, told["odometry"], nearest, bumped)
+            driving.take_in(task.travel, task.odometry, nearest, bumped)
             if self.on_control_step is not None:
-                self.on_control_step(self._inner)
-
-    def _observe(self, move: Move) -> "OrderedDict[str, Any]":
-        assert self._inner is not None
-        observation = OrderedDict(self._inner.observation)
-        observation["duration"] = np.array(move.ticks * CONTROL_TIMESTEP)
-        observation["driven"] = np.array(move.driven)
-        observation["clearance"] = np.array(move.clearance)
-        observation["outcome"] = np.array(int(move.outcome), dtype=np.int32)
-        return observation
+                self.on_control_step()
 
     def close(self) -> None:
         """Free the simulation and its OpenGL contexts."""
         self.motor.close()
+
+
+def _with_move(told: "OrderedDict[str, Any]", move: Move) -> "OrderedDict[str, Any]":
+    """Return the motor task's observations and what is told of a move."""
+    observation = OrderedDict(told)
+    observation["duration"] = np.array(move.ticks * CONTROL_TIMESTEP)
+    observation["driven"] = np.array(move.driven)
+    observation["clearance"] = np.array(move.clearance)
+    observation["outcome"] = np.array(int(move.outcome), dtype=np.int32)
+    return observation

@@ -101,7 +101,7 @@ class PathFindingEnv(NavigationEnv):
             raise
         self.observation, self.situation = observation, spec
         if render_mode is not None:
-            env.on_control_step = lambda _: camera.follow(env.physics)
+            env.on_control_step = lambda: camera.follow(env.physics)
 
     def _command(self, action: FloatArray) -> FloatArray:
         return action

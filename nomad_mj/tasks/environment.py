@@ -71,6 +71,21 @@ class MotorEnvironment(control.Environment):
             self.task.seed(seed)
         return super().reset()
 
+    def advance(self, command: Any) -> None:
+        """Do a control step of an episode that nothing ends, without a time step: see `told`.
+
+        What the sensors read is in the task's attributes: for whoever looks at few of them.
+        """
+        self._task.before_step(command, self._physics)
+        self._physics.step(self._n_sub_steps)
+        self._task.sense(self._physics)
+
+    def told(self) -> dm_env.TimeStep:
+        """Return the time step of the control step that `advance` did last."""
+        task, physics = self._task, self._physics
+        observation = task.get_observation(physics)
+        return dm_env.transition(task.get_reward(physics), observation)
+
     def observation_spec(self) -> Any:
         """Return the shapes and limits of the observations; flat ones have no limits."""
         spec = super().observation_spec()

@@ -46,6 +46,10 @@ class MotorTask(control.Task):
         Where the present episode started.
     ranges : array (layout.count,)
         The range readings of this control step, all rings concatenated [m].
+    bumpers : array (B,)
+        What the bumpers report of it, 0 or 1.
+    odometry : (float, float, float, float)
+        What the odometry tells after it, as observed.
     goal_xy : (float, float)
         Where the goal is now [m].
     ranging : Ranging
@@ -118,8 +122,10 @@ class MotorTask(control.Task):
         self.ranging.start(ranges, *streams[6:8])
         robot = self.scene.robot
         self.own = SelfSensing(robot, self.config, start, odometry, *streams[8:])
-        self._observation: OrderedDict[str, FloatArray] | None = None
+        self._sensed = False
         self.ranges: FloatArray = np.zeros(robot.layout.count)
+        self.bumpers: FloatArray = np.zeros(len(robot.bumpers))
+        self.odometry = (*start, 0.0)
         self.start_pose = start
 
     def initialize_episode(self, physics: NavigationPhysics) -> None:
@@ -129,7 +135,7 @@ class MotorTask(control.Task):
     def before_step(self, action: Any, physics: NavigationPhysics) -> None:
         """Command the motors in the order of the drive's: see `Drive.motors`."""
         physics.command(action)
-        self._observation = None
+        self._sensed = False
         if self.movers is not None:
             self.move_movers(physics)
 
@@ -176,21 +182,25 @@ class MotorTask(control.Task):
             result[name] = specs.Array((size,), np.float64, name=name)
         return result
 
+    def sense(self, physics: NavigationPhysics) -> None:
+        """Read the sensors, unless they were read in this control step: errors are drawn once."""
+        if self._sensed:
+            return
+        self.ranges = self.ranging.read(physics.cone_ranges())
+        self._encoders = physics.encoders()
+        self.odometry = self.own.reckon(self._encoders.tolist(), physics.pose)
+        self.bumpers = self.own.tell_bumpers(physics.bumpers())
+        self._sensed = True
+
     def get_observation(self, physics: NavigationPhysics) -> "OrderedDict[str, FloatArray]":
         """Return the readings of this control step, drawn once."""
-        if self._observation is None:
-            self._observation = self._sense(physics)
-        return self._observation.copy()
-
-    def _sense(self, physics: NavigationPhysics) -> "OrderedDict[str, FloatArray]":
-        self.ranges = ranges = self.ranging.read(physics.cone_ranges())
-        encoders = physics.encoders()
-        odometry = np.array(self.own.reckon(encoders.tolist(), physics.pose))
+        self.sense(physics)
+        odometry = np.array(self.odometry)
         result: OrderedDict[str, FloatArray] = OrderedDict()
         for name, first, last in self.slices:
-            result[name] = ranges[first:last]
-        result["bumpers"] = self.own.tell_bumpers(physics.bumpers())
-        result["encoders"] = encoders
+            result[name] = self.ranges[first:last]
+        result["bumpers"] = self.bumpers
+        result["encoders"] = self._encoders
         result["odometry"] = odometry
         result["goal"] = self._goal - odometry[:2]
         return result

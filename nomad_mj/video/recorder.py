@@ -4,7 +4,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import NamedTuple
 
-import dm_env
 import mujoco
 import numpy as np
 import numpy.typing as npt
@@ -80,7 +79,6 @@ class EpisodeRecorder:
             raise ConfigError(f"speed {speed:g}: must be 0.01 to 1000 times real time")
         self._env = env
         self._fps, self._speed = fps, speed
-        self._rings = [ring.name for ring in env.scene.robot.layout.rings]
         self._studio = Studio(env.scene, view, size, speed)
         try:
             self._encoder = Encoder(path, self._studio.layout.size, fps)
@@ -125,7 +123,7 @@ class EpisodeRecorder:
         pause : float
             For how long [s of the video].
         """
-        self._begin(self._see(None))
+        self._begin(self._see())
         if title:
             self.hold(pause, title, subtitle)
 
@@ -169,19 +167,17 @@ class EpisodeRecorder:
         """Change the caption only: what became of the decision."""
         self._studio.caption = caption
 
-    def _see(self, step: dm_env.TimeStep | None) -> _State:
+    def _see(self, ranges: FloatArray | None = None) -> _State:
         physics = self._env.physics
-        if step is None:
+        if ranges is None:
             rays = self._env.scene.robot.rays
             ranges = np.clip(physics.cone_ranges(), rays.minimum, rays.maximum)
-        else:
-            ranges = np.concatenate([step.observation[ring] for ring in self._rings])
         data = physics.data
         return _State(float(data.time), data.qpos.copy(), data.mocap_pos.copy(), ranges)
 
     def _catch_up(self) -> _State:
         """Begin an episode if the simulation is not where it was seen last; return its state."""
-        state, before = self._see(None), self._before
+        state, before = self._see(), self._before
         if before is None or before.time != state.time:
             return self._begin(state)
         same = np.array_equal(before.qpos, state.qpos)
@@ -196,10 +192,10 @@ class EpisodeRecorder:
         self._studio.painter.ranges = state.ranges
         return state
 
-    def _on_control_step(self, step: dm_env.TimeStep) -> None:
+    def _on_control_step(self) -> None:
         if self._borrowed is not None:
-            self._borrowed(step)
-        state = self._see(step)
+            self._borrowed()
+        state = self._see(self._env.motor.task.ranges.copy())
         if self._before is None or state.time <= self._before.time:
             self._begin(state)
             return

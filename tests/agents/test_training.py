@@ -205,7 +205,7 @@ def test_senseless_limits_are_refused(wrong: dict[str, Any]) -> None:
 def test_some_of_the_starts_are_trained_on_alone(env: PathFinding) -> None:
     agent = ReactivePlanner(env.scene.robot.layout, FAITHFUL)
     begun: list[list[float]] = []
-    env.on_control_step = lambda _: begun.append([*env.motor.task.start_pose[:2]])
+    env.on_control_step = lambda: begun.append([*env.motor.task.start_pose[:2]])
     try:
         training = train(env, agent, TrainingConfig(starts=(2,)), Training())
     finally:

@@ -69,7 +69,7 @@ def test_a_free_move_leads_where_the_action_says(
 
 def test_what_is_told_of_a_move_is_what_happened_tick_by_tick(env: PathFinding) -> None:
     ticks: list[dm_env.TimeStep] = []
-    env.on_control_step = ticks.append
+    env.on_control_step = lambda: ticks.append(env.motor.told())
     for move, (x, y) in enumerate([(1, 0.2), (-0.4, 1), (0.3, 0.3)]):
         if move == 0:
             env.reset(seed=0, start=(2.0, 2.0))

@@ -74,7 +74,7 @@ def test_the_robot_moves_evenly_between_control_steps(
         return np.zeros((SMALL[1], SMALL[0], 3), dtype=np.uint8)
 
     monkeypatch.setattr(Studio, "frame", frame)
-    env.on_control_step = lambda step: known.append((env.physics.time(), *env.physics.pose()))
+    env.on_control_step = lambda: known.append((env.physics.time(), *env.physics.pose()))
     hook = env.on_control_step
     with EpisodeRecorder(env, tmp_path / "v.mp4", size=SMALL) as recorder:
         drive(recorder, env)

@@ -2,7 +2,6 @@
 
 from types import TracebackType
 
-import dm_env
 import numpy as np
 from typing_extensions import Self
 
@@ -62,7 +61,7 @@ class Camera:
             max_decisions=max_decisions,
         )
 
-    def _look(self, _: dm_env.TimeStep) -> None:
+    def _look(self) -> None:
         task = self._env.motor.task
         self._robot.append(self._env.physics.pose())
         self._goal.append(task.goal)

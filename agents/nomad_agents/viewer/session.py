@@ -4,7 +4,6 @@ import math
 import time
 from collections.abc import Callable
 
-import dm_env
 import numpy as np
 from dm_control.rl.control import PhysicsError
 
@@ -172,8 +171,8 @@ class Session:
             self._let_go()
             self.news = "goal reached" if self._last.discount == 0.0 else "time is up"
 
-    def _after_agent(self, step: dm_env.TimeStep) -> None:
-        self._last = step
+    def _after_agent(self) -> None:
+        self._last = self.env.motor.told()
         self.on_step()
         if self.controls.urgent:
             raise _TakenOverError
