@@ -86,8 +86,9 @@ def perceive(
     goal: FloatArray,
     layout: SensorLayout,
     spec: SituationSpec,
+    threads: int = 1,
 ) -> Percept:
-    """Return the percept of one round of readings.
+    """Return the percept of one round of readings, of one robot or of many.
 
     Parameters
     ----------
@@ -99,8 +100,10 @@ def perceive(
         From the robot to the goal, world orientation [m].
     layout, spec
         The robot's sensors and the coding.
+    threads : int
+        For hundreds of robots, as of `certainty_grid`.
     """
-    grid = certainty_grid(ranges, heading, layout, spec.grid)
+    grid = certainty_grid(ranges, heading, layout, spec.grid, threads)
     coarse = code_grid(grid).reshape(*grid.shape[:-2], -1)
     situation = np.concatenate([attraction_force(goal, spec), coarse], axis=-1)
     return Percept(situation, grid, goal, ranges, heading)

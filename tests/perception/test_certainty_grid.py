@@ -134,6 +134,17 @@ def test_a_stack_is_handled_as_its_parts_bit_for_bit(
     np.testing.assert_array_equal(same[1, 2], certainty_grid(ranges[1, 2], 0.3, layout, spec))
 
 
+@pytest.mark.parametrize("threads", [1, 3])
+def test_hundreds_on_threads_are_handled_as_each_by_itself(threads: int) -> None:
+    rng = np.random.default_rng(0)
+    ranges = rng.uniform(0.1, 4.0, (700, NOMAD.count))
+    turns = rng.uniform(-4.0, 4.0, 700)
+    grids = certainty_grid(ranges, turns, NOMAD, SPEC, threads)
+    for i in (0, 1, 255, 256, 511, 512, 699):
+        one = certainty_grid(ranges[i], float(turns[i]), NOMAD, SPEC)
+        np.testing.assert_array_equal(grids[i], one)
+
+
 @given(st.data(), layouts, headings)
 def test_a_robot_turned_by_90_degrees_turns_the_grid(
     data: st.DataObject, layout: SensorLayout, heading: float

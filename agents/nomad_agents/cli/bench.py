@@ -40,7 +40,7 @@ LIMITS = {
     "frame_ratio": Limit("recorded frame 640 x 480 / bare mujoco.Renderer frame", 1.4),
     "batch_ratio": Limit("control steps/s of 64 robots, 2 threads / bare loop, 1", 1.5, True),
     "async_ratio": Limit("the same / gymnasium's AsyncVectorEnv, 2 processes", 2.0, True),
-    "perception_ratio": Limit("4096 single perceptions / 4096 robots at once", 20.0, True),
+    "perception_ratio": Limit("4096 single perceptions / 4096 at once, 2 threads", 20.0, True),
     "simulated_rate": Limit("simulated seconds a second, one robot, all sensors", 116.0, True),
 }
 _FRAMES = 60
