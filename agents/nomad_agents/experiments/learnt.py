@@ -36,7 +36,8 @@ def learn(
         `training_report`, names beginning with ``learn_``; ``learn_solved_all``: whether the last
         test solved every start.
     list of dict
-        Counts since the beginning, and starts solved in the test after the pass.
+        Counts since the beginning, and starts solved in the test after the pass. How many are
+        solved is told here and there of `whole_tests` alone.
     """
     curve: list[Row] = []
     before = agent.plannings
@@ -47,7 +48,9 @@ def learn(
             held = asdict(training)
             entry = {name: held[name] for name in _PER_PASS}
             entry["plannings"] -= before
-            entry |= {"pass": len(curve) + 1, "solved": training.solved, "starts": starts}
+            entry |= {"pass": len(curve) + 1, "starts": starts}
+            if config.whole_tests:
+                entry["solved"] = training.solved
             curve.append(entry)
         if watch is not None:
             watch(training)
@@ -56,6 +59,8 @@ def learn(
     report = training_report(env, agent, training) | {"starts": starts}
     report["plannings"] -= before
     del report["wall_s"]  # differs from run to run
+    if not config.whole_tests:
+        del report["solved"]
     report["solved_all"] = training.done
     return {f"learn_{name}": value for name, value in report.items()}, curve
 

@@ -115,7 +115,6 @@ class ReactionLearner(Learner):
                 check(latest)
         spent = _spent(latest) | {"sim_s": learnt_s}
         row |= {f"learn_{name}": value for name, value in spent.items()}
-        del row["learn_solved"]  # of a test that may have ended with the first start it lost
         if row["learn_solved_all"]:
             row |= {"decisions_to_test": latest.decisions, "sim_s_to_test": learnt_s}
         return agent, row

@@ -107,7 +107,10 @@ class Ablations(Experiment):
         ) as env:
             agent = ReactivePlanner(env.scene.robot.layout, config)
             settings = TrainingConfig(
-                run.seed, min_passes=variant.min_passes, max_passes=_MOST_PASSES
+                run.seed,
+                min_passes=variant.min_passes,
+                max_passes=_MOST_PASSES,
+                whole_tests=False,
             )
             row, curve = learn(env, agent, settings)
             metrics, trials = assess(env, agent, run.seed, _UNSEEN)

@@ -77,7 +77,7 @@ class Noise(Experiment):
         result = Result(run, {"level": noise.level, "kind": noise.kind})
         with _open(run) as env:
             if run.agent == LEARNER and noise != RangeNoise():
-                settings = TrainingConfig(run.seed, max_passes=_MOST_PASSES)
+                settings = TrainingConfig(run.seed, max_passes=_MOST_PASSES, whole_tests=False)
                 agent = new_learner(result, folder, env, find_config(run.config), settings)
             else:
                 agent = acting_agent(run, folder, env)

@@ -63,7 +63,7 @@ class OtherRobots(Experiment):
         result = Result(run, {})
         with nomad_mj.load("path_finding", room=run.room, robot=run.robot) as env:
             if run.agent == LEARNER:
-                settings = TrainingConfig(run.seed, max_passes=_MOST_PASSES)
+                settings = TrainingConfig(run.seed, max_passes=_MOST_PASSES, whole_tests=False)
                 agent = new_learner(result, folder, env, find_config(run.config), settings)
             else:
                 agent = acting_agent(run, folder, env)
