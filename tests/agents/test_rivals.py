@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from nomad_agents.agent import Agent
 from nomad_agents.baselines import (
@@ -17,6 +17,7 @@ from nomad_agents.baselines import (
     VectorFieldHistogram,
     VfhConfig,
 )
+from nomad_agents.baselines.classical import BLOCKED
 from nomad_agents.baselines.way import action_towards, free_way, occupied_cells, reach_of
 from nomad_agents.episode import run_episode
 from nomad_agents.reactive_planner import FAITHFUL
@@ -62,10 +63,14 @@ def move_of(agent: Agent, percept: Percept) -> FloatArray:
     return displacement(agent.act(percept, None).action, percept.goal, ACTION)
 
 
-def literal_clearance(move: FloatArray, cells: FloatArray) -> float:
-    """Return how near the robot's centre comes to any cell on a move, finely divided."""
+def literal_room(move: FloatArray, cells: FloatArray, reach: float) -> float:
+    """Return the room left on a move, finely divided: of `reach` about each cell, or of nine
+    tenths of the distance to one that is nearer at first."""
     way = np.linspace(0, 1, 200)[:, None] * move
-    return float(np.linalg.norm(cells[:, None] - way, axis=-1).min(initial=np.inf))
+    gaps = np.linalg.norm(cells[:, None] - way, axis=-1)
+    distance = np.hypot(*cells.T)
+    allowed = np.where(distance < reach, 0.9 * distance, reach)
+    return float((gaps - allowed[:, None]).min(initial=np.inf))
 
 
 @given(SEEDS, st.floats(-7, 7), st.floats(0.01, 1.0))
@@ -82,14 +87,36 @@ def test_the_action_of_a_move_is_the_inverse_of_the_move(
 def test_a_free_way_ends_where_the_disc_touches(seed: int, reach: float, density: float) -> None:
     rng = np.random.default_rng(seed)
     cells = occupied_cells(world(seed, density), GRID, 0.5)
+    assume((abs(np.hypot(*cells.T) - reach) > 1e-9).all())
     headings = rng.uniform(-np.pi, np.pi, 4)
-    shrunk = min(reach, 0.9 * float(np.hypot(*cells.T).min(initial=np.inf)))
     for heading, free in zip(headings, free_way(headings, cells, reach), strict=True):
         ahead = np.array([math.cos(heading), math.sin(heading)])
-        if np.isfinite(free):
-            assert literal_clearance(free * ahead, cells) == pytest.approx(shrunk, abs=0.01)
+        if not free:  # a cell that is too near already would come nearer
+            assert literal_room(6 * ahead, cells[np.hypot(*cells.T) < reach], reach) <= 1e-6
+        elif np.isfinite(free):
+            assert literal_room(free * ahead, cells, reach) == pytest.approx(0.0, abs=0.01)
         else:
-            assert literal_clearance(6 * ahead, cells) >= shrunk - 1e-6
+            assert literal_room(6 * ahead, cells, reach) >= -1e-6
+
+
+def test_a_cell_behind_leaves_no_room_ahead() -> None:
+    wall, behind = np.array([[0.6, 0.0]]), np.array([[-0.2, -0.2]])
+    alone = free_way(np.zeros(1), wall, 0.465)
+    assert alone == pytest.approx([0.135])
+    assert free_way(np.zeros(1), np.concatenate([wall, behind]), 0.465) == alone
+
+
+@pytest.mark.parametrize("name", RIVALS)
+def test_none_creeps_into_what_is_too_near_already(name: str) -> None:
+    """Where something is nearer than the safety distance on the way to the goal, go round it."""
+    agent, start = MAKERS[name](), np.array([0.0, 0.03])
+    place = start
+    for _ in range(12):
+        x, y = CENTRES[..., 0] + place[0], CENTRES[..., 1] + place[1]
+        post = (np.hypot(x - 0.36, y) < 0.11).astype(np.float64)
+        place = place + move_of(agent, Percept(np.zeros(26), post, np.array([4.0, 0.0]) - place))
+        assert np.hypot(place[0] - 0.36, place[1]) > LAYOUT.radius
+    assert np.hypot(*(place - [4.0, 0.0])) < 1.0
 
 
 def test_what_sensors_do_not_see_is_kept_off() -> None:
@@ -138,8 +165,7 @@ def test_no_move_ends_in_what_the_map_shows_where_there_is_a_way(
         move = move_of(agent, percept)
         assert np.isfinite(move).all() and 0 < np.hypot(*move) <= 1 + 1e-9
         if (free_way(every, cells, reach) > 0.05).any():
-            shrunk = min(reach, 0.9 * float(np.hypot(*cells.T).min(initial=np.inf)))
-            assert literal_clearance(move, cells) >= shrunk - 0.011
+            assert literal_room(move, cells, reach) >= -BLOCKED - 1e-3
 
 
 @pytest.mark.parametrize("name", RIVALS)

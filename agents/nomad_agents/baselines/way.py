@@ -15,7 +15,7 @@ from nomad_mj.perception import GridSpec, Percept, cell_centres
 from nomad_mj.types import FloatArray, SensorLayout
 
 _AT_GOAL = 1e-9  # [m]
-_TIGHT = 0.9  # of the distance to the nearest cell, where the robot stands closer than it should
+_TIGHT = 0.9  # of the distance to a cell that the robot stands closer to than it should
 
 
 @lru_cache(maxsize=8)
@@ -50,8 +50,8 @@ def free_way(headings: FloatArray, cells: FloatArray, reach: float) -> FloatArra
     cells : array (m, 2)
         Points to keep off [m], from the disc's centre.
     reach : float
-        Radius of the disc with its safety distance [m]. A disc that stands closer than that to a
-        point is taken to be so much smaller that it can leave, or pass along.
+        Radius of the disc with its safety distance [m]. Where it stands closer than that to a
+        point, it can leave it or pass along, but not come nearer than nine tenths: that is no way.
 
     Returns
     -------
@@ -60,13 +60,13 @@ def free_way(headings: FloatArray, cells: FloatArray, reach: float) -> FloatArra
     if not len(cells):
         return np.full(len(headings), np.inf)
     square = cells[:, 0] ** 2 + cells[:, 1] ** 2
-    nearest = float(np.sqrt(square.min()))
-    radius2 = min(reach, _TIGHT * nearest) ** 2
+    within = square < reach * reach  # of these alone: one behind leaves no room ahead
+    radius2 = np.where(within, _TIGHT * _TIGHT * square, reach * reach)
     ahead = np.cos(headings)[:, None] * cells[:, 0] + np.sin(headings)[:, None] * cells[:, 1]
     half = radius2 - square + ahead * ahead  # squared half chord of the disc about the point
     hit = (half > 0) & (ahead > 0)
-    way = np.where(hit, ahead - np.sqrt(np.maximum(half, 0.0)), np.inf)
-    return way.min(axis=1)
+    way = np.where(within, 0.0, ahead - np.sqrt(np.maximum(half, 0.0)))
+    return np.where(hit, way, np.inf).min(axis=1)
 
 
 def action_towards(heading: float, length: float, goal: FloatArray, spec: ActionSpec) -> FloatArray:
