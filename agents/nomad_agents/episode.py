@@ -113,6 +113,7 @@ class _Tally:
 
     def __init__(self, clearance: float) -> None:
         self.decisions = self.reactions = self.unmatched = 0
+        self.contacts = 0
         self.outcomes: list[int] = []
         self.duration = self.driven = 0.0
         self.clearance = clearance
@@ -129,6 +130,7 @@ class _Tally:
         self.decisions += 1
         self.reactions += decision.kind == "reacted"
         self.outcomes.append(int(seen["outcome"]))
+        self.contacts += int(seen["contact"])
         self.duration += float(seen["duration"])
         self.driven += float(seen["driven"])
         self.clearance = min(self.clearance, float(seen["clearance"]))
@@ -142,7 +144,7 @@ class _Tally:
             self.reactions,
             self.unmatched,
             self.outcomes.count(Outcome.VIRTUAL_COLLISION),
-            self.outcomes.count(Outcome.BUMPED),
+            self.contacts,
             self.duration,
             self.driven,
             self.clearance,

@@ -69,7 +69,7 @@ class BatchPathFinding(BatchEnvironment):
         self._moves: dict[int, _Underway] = {}  # by world
         self._ticks = np.zeros(worlds.count, dtype=np.intp)
         self._duration, self._driven, self._clearance = np.zeros((3, worlds.count))
-        self._outcome = np.zeros(worlds.count, dtype=np.int32)
+        self._outcome, self._contact = np.zeros((2, worlds.count), dtype=np.int32)
 
     @property
     def moving(self) -> npt.NDArray[np.bool_]:
@@ -101,11 +101,13 @@ class BatchPathFinding(BatchEnvironment):
         Raises
         ------
         ValueError
-            Actions of another shape or not finite.
+            Actions of another shape or not finite, or a move of `start_moves` is under way.
         PhysicsError
             A simulation diverged, naming the worlds. All whose move was under way begin a new
             episode at their next step.
         """
+        for world in self._moves:
+            raise ValueError(f"world {world}: its move is under way; advance() until it is over")
         self.start_moves(actions, mask)
         while self._moves:
             self.advance()
@@ -199,6 +201,7 @@ class BatchPathFinding(BatchEnvironment):
         self._driven[world] = done.driven
         self._clearance[world] = done.clearance
         self._outcome[world] = int(done.outcome)
+        self._contact[world] = int(done.contact)
 
     def _begun(self, chosen: IntArray) -> None:
         self._ticks[chosen] = 0
@@ -212,4 +215,5 @@ class BatchPathFinding(BatchEnvironment):
         told["driven"] = self._driven.copy()
         told["clearance"] = self._clearance.copy()
         told["outcome"] = self._outcome.copy()
+        told["contact"] = self._contact.copy()
         return told

@@ -1,9 +1,11 @@
 """All worlds' simulations, on so many threads: lots of equal models, side by side."""
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 import numpy as np
+from dm_control.rl.control import PhysicsError
 
 from nomad_mj.batch.lot import Lot, Moved, Sensed
 from nomad_mj.scene import Scene
@@ -64,18 +66,19 @@ class Simulations:
         Raises
         ------
         PhysicsError
-            Naming the worlds of a lot that diverged.
+            Naming the worlds that diverged. All have been stepped then, and none still is.
         """
         jobs = [
             partial(lot.step, rows, commands[chosen], _own(moved, lot, rows))
             for lot, chosen, rows in self._parts(worlds)
         ]
         if self._pool is None:
-            for job in jobs:
-                job()
-            return
-        for done in [self._pool.submit(job) for job in jobs]:
-            done.result()
+            errors = [_error_of(job) for job in jobs]
+        else:
+            errors = list(self._pool.map(_error_of, jobs))
+        failed = [str(error) for error in errors if error is not None]
+        if failed:
+            raise PhysicsError("; ".join(failed))
 
     def read(self, worlds: IntArray) -> Sensed:
         """Return what the sensors of worlds (n,), ascending, read now."""
@@ -123,6 +126,15 @@ class Simulations:
             if len(rows):
                 parts.append((lot, chosen, rows))
         return parts
+
+
+def _error_of(job: Callable[[], None]) -> PhysicsError | None:
+    """Do a job; return how the simulation failed, None if it did not."""
+    try:
+        job()
+    except PhysicsError as error:
+        return error
+    return None
 
 
 def _own(moved: Moved, lot: Lot, rows: IntArray) -> Moved:

@@ -14,6 +14,7 @@ from nomad_mj.batch.world import World
 from nomad_mj.errors import ConfigError, NomadError, StartError
 from nomad_mj.scene import Scene
 from nomad_mj.tasks import MotorConfig, MotorTask, NavigationPhysics, Start, resolve_start
+from nomad_mj.tasks.motor import seed_sequence
 from nomad_mj.tasks.ranging import RangingOfMany
 from nomad_mj.types import FloatArray, IntArray
 
@@ -84,11 +85,12 @@ class Worlds:
         ]
         self._poses = [world.pose for world in self.worlds]
 
-    def seed(self, seeds: "Sequence[Seed]", worlds: IntArray) -> None:
+    def seed(self, seeds: "Sequence[np.random.SeedSequence | None]", worlds: IntArray) -> None:
         """Start the sequences of episodes of worlds (n,) anew, where a seed (N) is not None."""
         for world in worlds.tolist():
-            if seeds[world] is not None:
-                self.tasks[world].seed(seeds[world])
+            seed = seeds[world]
+            if seed is not None:
+                self.tasks[world].seed(seed)
 
     def start_at(self, starts: "Sequence[Start]", worlds: IntArray) -> None:
         """Let the next episodes of worlds (n,) start where `starts` (N) say, all checked first.
@@ -126,9 +128,11 @@ class Worlds:
             self._simulations.take(world, nursery)
             self._touched[world] = nursery.bumpers()
             self.ranges[world] = task.ranges
-            task.ranges = self.ranges[world]  # the row itself: the task's goes on with it
             self.bumpers[world] = told["bumpers"]
             self.encoders[world] = told["encoders"]
+            # The rows themselves: the task's go on with them.
+            task.ranges, task.bumpers = self.ranges[world], self.bumpers[world]
+            task.encoders = self.encoders[world]
             self.odometry[world] = told["odometry"]
             self.goal[world] = told["goal"]
             self._ranging.go_on(world)
@@ -167,7 +171,9 @@ class Worlds:
         self.ranges[worlds] = self._ranging.read(worlds, cones)
         self.encoders[worlds] = encoders
         pairs = zip(chosen, encoders.tolist(), strict=True)
-        odometry = np.array([tasks[world].own.reckon(own, poses[world]) for world, own in pairs])
+        for world, own in pairs:
+            tasks[world].odometry = tasks[world].own.reckon(own, poses[world])
+        odometry = np.array([tasks[world].odometry for world in chosen])
         self.odometry[worlds] = odometry
         self._touched[worlds] = bumpers
         if self._bumpers_err:
@@ -206,16 +212,21 @@ class Worlds:
             raise ConfigError(f"mask: must be {self.count} times True or False, one for each world")
         return np.flatnonzero(given)
 
-    def seeds(self, seed: Any) -> "Sequence[Seed]":
-        """Return a seed for each world, given one for all or one each."""
+    def seeds(self, seed: Any) -> "Sequence[np.random.SeedSequence | None]":
+        """Return a seed for each world, given one for all or one each; raise ConfigError."""
         if isinstance(seed, np.integer):
             seed = int(seed)
         if seed is None or isinstance(seed, int | np.random.SeedSequence):
-            return [world_seed(seed, world) for world in range(self.count)]
-        listed = isinstance(seed, Sequence | np.ndarray) and not isinstance(seed, str)
-        if listed and len(seed) == self.count:
-            return list(seed)
-        raise ConfigError(f"seed: must be a whole number, or one for each of {self.count} worlds")
+            given: list[Any] = [world_seed(seed, world) for world in range(self.count)]
+        elif isinstance(seed, Sequence | np.ndarray) and not isinstance(seed, str):
+            given = list(seed)
+        else:
+            given = []
+        if len(given) != self.count:
+            raise ConfigError(
+                f"seed: must be a whole number, or one for each of {self.count} worlds"
+            )
+        return [None if each is None else seed_sequence(each) for each in given]
 
     def close(self) -> None:
         """Free all simulations."""

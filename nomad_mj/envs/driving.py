@@ -17,12 +17,16 @@ _TURN = 2 * math.pi
 
 
 class Move(NamedTuple):
-    """What became of a move: distances in metres, `ticks` control steps."""
+    """What became of a move: distances in metres, `ticks` control steps.
+
+    `contact`: whether something was touched, in whatever part of the move.
+    """
 
     outcome: Outcome
     clearance: float
     driven: float = 0.0
     ticks: int = 0
+    contact: bool = False
 
 
 def asked_move(action: Any, goal: FloatArray, spec: ActionSpec, name: str = "action") -> FloatArray:
@@ -146,7 +150,7 @@ class Driving:
             motion,
             CONTROL_TIMESTEP,
         )
-        self._bumped = bumped
+        self._bumped, self._contact = bumped, False
         self._clearance = math.inf  # until the move is under way
         self._driven, self._ticks = 0.0, 0
 
@@ -171,6 +175,8 @@ class Driving:
     ) -> None:
         """Take in a control step: its way, the odometry, the shortest reading [m], contacts."""
         self._travel = travel = _facing(travel, odometry)
+        # What was touched before the move, and still is, is no contact of this move.
+        self._contact |= bumped and not self._bumped
         self._bumped = bumped
         self._clearance = min(self._clearance, nearest)
         self._driven += math.hypot(travel.forward, travel.sideways)
@@ -178,7 +184,7 @@ class Driving:
 
     def result(self) -> Move:
         """Return what became of the move."""
-        return Move(self._move.outcome, self._clearance, self._driven, self._ticks)
+        return Move(self._move.outcome, self._clearance, self._driven, self._ticks, self._contact)
 
 
 def _facing(travel: Travel, odometry: Sequence[float]) -> Travel:

@@ -7,6 +7,7 @@ from typing import Any
 
 import dm_env
 import numpy as np
+from dm_control.rl.control import PhysicsError
 from dm_env import specs
 
 from nomad_mj.envs.driving import Driving, Lookout, Move, asked_move, reward_of
@@ -45,6 +46,7 @@ def told_of_moves(motion: MotionConfig) -> "OrderedDict[str, specs.Array]":
         driven=specs.BoundedArray((), np.float64, 0.0, np.inf, name="driven"),
         clearance=specs.BoundedArray((), np.float64, 0.0, np.inf, name="clearance"),
         outcome=specs.DiscreteArray(len(Outcome), np.int32, name="outcome"),
+        contact=specs.DiscreteArray(2, np.int32, name="contact"),
     )
 
 
@@ -55,7 +57,8 @@ class PathFinding(dm_env.Environment):
     the move is done, stopped by a virtual collision (the robot then retracts), bumped or timed
     out. Observations are those of the motor task after the move, and of the move itself:
     ``duration`` [s], ``driven`` (length of the way, there and back) [m], ``clearance`` (shortest
-    reading on the way) [m], ``outcome`` (see `Outcome`). The reward is z of Eqs 6-8.
+    reading on the way) [m], ``outcome`` (see `Outcome`), ``contact`` (1 if a bumper was touched,
+    in whatever part of the move). The reward is z of Eqs 6-8.
     Reaching the goal ends the episode with discount 0, the time limit with discount 1. A goal that
     moves is reached if it is there when a move ends, not if it comes by during one.
 
@@ -122,14 +125,21 @@ class PathFinding(dm_env.Environment):
         return dm_env.restart(_with_move(told, Move(Outcome.NONE, nearest)))
 
     def step(self, action: Any) -> dm_env.TimeStep:
-        """Carry out one move and return what became of it."""
+        """Carry out one move and return what became of it.
+
+        Raises
+        ------
+        ValueError
+            An action that is not two finite numbers.
+        PhysicsError
+            The simulation diverged. The next step begins a new episode.
+        """
         if self._over:
             return self.reset()
         task = self.motor.task
         goal = task.goal - task.odometry[:2]
         move = asked_move(action, goal, self.config.action)
         done = self._carry_out(move)
-        self._ticks += done.ticks
         reward = reward_of(done, move, goal)
         observation = _with_move(task.get_observation(self.physics), done)
         if task.reaches_goal(task.goal_distance(self.physics)):
@@ -151,7 +161,12 @@ class PathFinding(dm_env.Environment):
             command = driving.command(float(np.minimum.reduce(task.ranges + slack)))
             if command is None:
                 return driving.result()
-            motor.advance(command)
+            try:
+                motor.advance(command)
+            except PhysicsError:
+                self._over = True
+                raise
+            self._ticks += 1
             bumped = bool(np.count_nonzero(task.bumpers))
             nearest = float(np.minimum.reduce(task.ranges))
             driving.take_in(task.travel, task.odometry, nearest, bumped)
@@ -170,4 +185,5 @@ def _with_move(told: "OrderedDict[str, Any]", move: Move) -> "OrderedDict[str, A
     observation["driven"] = np.array(move.driven)
     observation["clearance"] = np.array(move.clearance)
     observation["outcome"] = np.array(int(move.outcome), dtype=np.int32)
+    observation["contact"] = np.array(int(move.contact), dtype=np.int32)
     return observation

@@ -7,6 +7,7 @@ from typing import Any, SupportsFloat
 import gymnasium
 import numpy as np
 import numpy.typing as npt
+from dm_control.rl.control import PhysicsError
 from gymnasium import spaces
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 
@@ -139,6 +140,8 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
             The episode is over, or none has begun.
         ValueError
             An action of another shape, or with numbers that are not finite.
+        PhysicsError
+            The simulation diverged: the episode is over.
         """
         if self.seen is None or self._over:
             raise ResetNeeded("the episode is over: call reset() before the next step()")
@@ -146,7 +149,11 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         if action.shape != self.action_space.shape or not np.isfinite(action).all():
             (count,) = self.action_space.shape or (0,)
             raise ValueError(f"action {action}: must be {count} finite numbers in [-1, 1]")
-        step = self.environment.step(self._command(action.clip(-1.0, 1.0)))
+        try:
+            step = self.environment.step(self._command(action.clip(-1.0, 1.0)))
+        except PhysicsError:
+            self._over = True
+            raise
         self.seen, self._over = step.observation, step.last()
         self._steps += 1
         if self.render_mode is not None:

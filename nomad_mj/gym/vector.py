@@ -5,8 +5,10 @@ from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
+from dm_control.rl.control import PhysicsError
 from gymnasium import spaces
-from gymnasium.error import ResetNeeded
+from gymnasium.error import ClosedEnvironmentError, ResetNeeded
+from gymnasium.utils.seeding import np_random
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space, concatenate, create_empty_array
 
@@ -84,7 +86,10 @@ class NavigationVectorEnv(VectorEnv[Any, Any, Any]):
         ------
         StartError, ConfigError
             A start that cannot be, another option.
+        ClosedEnvironmentError
+            The environments have been closed.
         """
+        self._refuse_closed()
         given = options or {}
         for name in given:
             if name not in _OPTIONS:
@@ -96,6 +101,9 @@ class NavigationVectorEnv(VectorEnv[Any, Any, Any]):
             starts = [given["start"]] * self.num_envs
         chosen = np.ones(self.num_envs, dtype=bool) if mask is None else np.asarray(mask)
         step = self.batch.reset(seed, starts, chosen)
+        first = seed[0] if isinstance(seed, list) else seed
+        if first is not None:  # of what wrappers draw; the environments have their own
+            self._np_random, self._np_random_seed = np_random(int(first))
         infos: dict[str, Any] = {}
         self._begin(step, chosen, infos)
         return self._stacked(), infos
@@ -124,7 +132,12 @@ class NavigationVectorEnv(VectorEnv[Any, Any, Any]):
             An episode is over, or none has begun.
         ValueError
             Actions of another shape, or with numbers that are not finite.
+        PhysicsError
+            A simulation diverged: the episodes are over, all that were not before.
+        ClosedEnvironmentError
+            The environments have been closed.
         """
+        self._refuse_closed()
         over = self._terminated | self._truncated
         if not self._begun.all() or (over.any() and self.autoreset_mode is AutoresetMode.DISABLED):
             raise ResetNeeded("an episode is over: call reset() before the next step()")
@@ -133,7 +146,11 @@ class NavigationVectorEnv(VectorEnv[Any, Any, Any]):
         infos: dict[str, Any] = {}
         if over.any():
             self._begin(self.batch.reset(mask=over), over, infos)
-        step = self.batch.step(commands, going)
+        try:
+            step = self.batch.step(commands, going)
+        except PhysicsError:
+            self._begun[going] = False
+            raise
         finals: dict[int, dict[str, Any]] = {}
         for env in np.flatnonzero(going).tolist():
             self._take_in(env, self._accounts[env].go_on(step.world(env)), infos, finals)
@@ -180,6 +197,10 @@ class NavigationVectorEnv(VectorEnv[Any, Any, Any]):
         space = self.single_observation_space
         empty = create_empty_array(space, self.num_envs, fn=np.zeros)
         return concatenate(space, cast("Any", self._observed), empty)
+
+    def _refuse_closed(self) -> None:
+        if self.closed:
+            raise ClosedEnvironmentError("the environments have been closed: make others")
 
     def close_extras(self, **kwargs: Any) -> None:
         """Free all simulations."""

@@ -11,7 +11,7 @@ from dm_env import specs
 
 from nomad_mj.errors import ConfigError
 from nomad_mj.scene import CONTROL_TIMESTEP
-from nomad_mj.tasks.motor import MotorTask
+from nomad_mj.tasks.motor import MotorTask, seed_sequence
 from nomad_mj.tasks.physics import NavigationPhysics
 from nomad_mj.tasks.starts import Start
 
@@ -65,25 +65,39 @@ class MotorEnvironment(control.Environment):
         StartError, UnknownNameError
             See `starts.resolve_start`.
         """
+        sequence = None if seed is None else seed_sequence(seed)  # refused, it leaves no trace
         if start is not None:
             self.task.start_next_at(start)
-        if seed is not None:
-            self.task.seed(seed)
+        if sequence is not None:
+            self.task.seed(sequence)
         return super().reset()
 
     def advance(self, command: Any) -> None:
         """Do a control step of an episode that nothing ends, without a time step: see `told`.
 
-        What the sensors read is in the task's attributes: for whoever looks at few of them.
+        What the sensors read is in the task's attributes: for whoever looks at few of them. Time
+        limit and goal do not end the episode here.
+
+        Raises
+        ------
+        RuntimeError
+            No episode is under way.
         """
+        if self._reset_next_step:
+            raise RuntimeError("no episode is under way: reset() begins one")
+        self._step_count += 1
         self._task.before_step(command, self._physics)
         self._physics.step(self._n_sub_steps)
         self._task.sense(self._physics)
 
     def told(self) -> dm_env.TimeStep:
-        """Return the time step of the control step that `advance` did last."""
+        """Return the time step of the control step that `advance` did last, or of the reset."""
         task, physics = self._task, self._physics
         observation = task.get_observation(physics)
+        if self._flat_observation:
+            observation = control.flatten_observation(observation)
+        if not self._step_count:
+            return dm_env.restart(observation)
         return dm_env.transition(task.get_reward(physics), observation)
 
     def observation_spec(self) -> Any:

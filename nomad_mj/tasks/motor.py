@@ -21,6 +21,15 @@ from nomad_mj.types import FloatArray, Travel
 REWARD_MARGIN = 5.0  # [m] from the goal at which the reward has fallen to 0.1
 
 
+def seed_sequence(seed: int | np.random.SeedSequence | None) -> np.random.SeedSequence:
+    """Return a seed as a SeedSequence, None as a new one; raise ConfigError if it is none."""
+    try:
+        is_sequence = isinstance(seed, np.random.SeedSequence)
+        return seed if is_sequence else np.random.SeedSequence(seed)
+    except (TypeError, ValueError):
+        raise ConfigError(f"seed {seed!r}: must be a whole number from 0 on") from None
+
+
 class MotorTask(control.Task):
     """Reach the goal with motor velocities as actions.
 
@@ -48,6 +57,8 @@ class MotorTask(control.Task):
         The range readings of this control step, all rings concatenated [m].
     bumpers : array (B,)
         What the bumpers report of it, 0 or 1.
+    encoders : array (E,)
+        What the encoders read of it, as observed.
     odometry : (float, float, float, float)
         What the odometry tells after it, as observed.
     goal_xy : (float, float)
@@ -92,11 +103,7 @@ class MotorTask(control.Task):
 
     def seed(self, random: int | np.random.SeedSequence | None) -> None:
         """Start the sequence of episodes anew from a seed."""
-        try:
-            is_sequence = isinstance(random, np.random.SeedSequence)
-            self._seed = random if is_sequence else np.random.SeedSequence(random)
-        except (TypeError, ValueError):
-            raise ConfigError(f"seed {random!r}: must be a whole number from 0 on") from None
+        self._seed = seed_sequence(random)
         self._episode = 0
 
     def start_next_at(self, start: Start) -> None:
@@ -125,6 +132,7 @@ class MotorTask(control.Task):
         self._sensed = False
         self.ranges: FloatArray = np.zeros(robot.layout.count)
         self.bumpers: FloatArray = np.zeros(len(robot.bumpers))
+        self.encoders: FloatArray = np.zeros(len(robot.drive.encoders))
         self.odometry = (*start, 0.0)
         self.start_pose = start
 
@@ -187,8 +195,8 @@ class MotorTask(control.Task):
         if self._sensed:
             return
         self.ranges = self.ranging.read(physics.cone_ranges())
-        self._encoders = physics.encoders()
-        self.odometry = self.own.reckon(self._encoders.tolist(), physics.pose)
+        self.encoders = physics.encoders()
+        self.odometry = self.own.reckon(self.encoders.tolist(), physics.pose)
         self.bumpers = self.own.tell_bumpers(physics.bumpers())
         self._sensed = True
 
@@ -197,10 +205,11 @@ class MotorTask(control.Task):
         self.sense(physics)
         odometry = np.array(self.odometry)
         result: OrderedDict[str, FloatArray] = OrderedDict()
+        ranges = self.ranges.copy()  # what is handed out is not what the robot drives by
         for name, first, last in self.slices:
-            result[name] = self.ranges[first:last]
-        result["bumpers"] = self.bumpers
-        result["encoders"] = self._encoders
+            result[name] = ranges[first:last]
+        result["bumpers"] = self.bumpers.copy()
+        result["encoders"] = self.encoders.copy()
         result["odometry"] = odometry
         result["goal"] = self._goal - odometry[:2]
         return result

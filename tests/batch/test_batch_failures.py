@@ -32,6 +32,25 @@ def test_a_world_that_diverges_is_named_and_all_begin_anew(rooms: list[str]) -> 
             one.close()
 
 
+def test_when_worlds_of_several_lots_diverge_all_are_named_and_none_goes_on() -> None:
+    rooms = ["paper_room"] + ["hall"] * 15
+    with load_batch("motor", 16, rooms, task_kwargs={"random": 3}, threads=2) as many:
+        many.reset(seed=0)
+        commands = np.zeros(many.action_spec().shape)
+        wrong = commands.copy()
+        wrong[[0, 3], 0] = np.nan
+        with pytest.raises(PhysicsError, match=r"^world 0: .*BADCTRL; world 3: .*BADCTRL$"):
+            many.step(wrong)
+        told = many.reset(seed=0)
+        ones = singles("motor", rooms, "nomad200", {})
+        check_same(told, [one.reset() for one in ones], "reset")
+        for _ in range(3):
+            told = many.step(commands)
+            check_same(told, [one.step(commands[0]) for one in ones], "step")
+        for one in ones:
+            one.close()
+
+
 @pytest.mark.parametrize(
     ("options", "says"),
     [

@@ -114,6 +114,7 @@ def test_seeds_of_worlds_are_those_of_single_environments() -> None:
         ("reset", {"starts": [0]}, "starts: there are 1, but 3 worlds"),
         ("reset", {"seed": -3}, "seed -3: must be a whole number"),
         ("reset", {"seed": [1, 2]}, "seed: must be a whole number, or one for each of 3"),
+        ("reset", {"seed": [50, -1, 7], "starts": [1, 1, 1]}, "seed -1: must be a whole number"),
         ("reset", {"mask": [True]}, "mask: must be 3 times True or False"),
         ("step", {"actions": np.zeros((3, 2)), "mask": [1, 0, 0]}, "mask: must be 3 times True"),
     ],
@@ -121,14 +122,17 @@ def test_seeds_of_worlds_are_those_of_single_environments() -> None:
 def test_what_is_wrong_is_told_in_a_line_and_changes_nothing(
     method: str, arguments: dict[str, Any], says: str
 ) -> None:
-    with load_batch(count=3, threads=1, task_kwargs={"random": 1}) as many:
-        before = many.reset()
+    options: dict[str, Any] = {"count": 3, "threads": 1, "task_kwargs": {"random": 1}}
+    with load_batch(**options) as many, load_batch(**options) as twin:
+        before, _ = many.reset(), twin.reset()
         with pytest.raises(NomadError) as caught:
             getattr(many, method)(**arguments)
         assert says in str(caught.value) and "\n" not in str(caught.value)
         after = many.time_step()
         for world in range(3):
             check_same(after, [before.world(w) for w in range(3)], world)
+        then = twin.reset()
+        check_same(many.reset(), [then.world(w) for w in range(3)], "the next reset")
 
 
 def test_actions_that_make_no_sense_name_the_world() -> None:
@@ -142,3 +146,16 @@ def test_actions_that_make_no_sense_name_the_world() -> None:
         many.advance()
         with pytest.raises(ValueError, match="world 0: its move is under way"):
             many.start_moves([[1, 0], [1, 0]])
+        with pytest.raises(ValueError, match="world 0: its move is under way"):
+            many.step([[1, 0], [1, 0]], mask=[False, True])
+
+
+def test_the_tasks_of_worlds_tell_what_they_sense_now() -> None:
+    with load_batch("motor", 2, task_kwargs={"random": 1}, threads=1) as many:
+        told = many.reset().observation
+        for _ in range(20):
+            told = many.step(np.full((2, 3), 0.2)).observation
+        for world, task in enumerate(many.tasks):
+            assert task.odometry == tuple(told["odometry"][world])
+            np.testing.assert_array_equal(task.encoders, told["encoders"][world])
+            np.testing.assert_array_equal(task.bumpers, told["bumpers"][world])

@@ -1,14 +1,18 @@
 """The vector environments are the single ones side by side, to the bit, in every mode."""
 
+import math
 from typing import Any
 
 import gymnasium
 import numpy as np
 import pytest
+from dm_control.rl.control import PhysicsError
 from gymnasium.vector import AutoresetMode, SyncVectorEnv, VectorEnv
 
 from nomad_mj.errors import NomadError
+from nomad_mj.gym.base import NavigationEnv
 from nomad_mj.gym.registration import MOTOR, PATH_FINDING
+from nomad_mj.gym.vector import NavigationVectorEnv
 
 ROOMS = ["paper_room", "hall", "paper_room"]
 Vector = VectorEnv[Any, Any, Any]
@@ -127,4 +131,70 @@ def test_what_cannot_be_asked_of_it() -> None:
         many.step(np.array([[0, 0, 0], [0, np.nan, 0]]))
     with pytest.raises(ValueError, match=r"actions of shape \(3,\)"):
         many.step(np.zeros(3))
+    many.close()
+
+
+@pytest.mark.parametrize("name", [MOTOR, PATH_FINDING])
+def test_after_a_simulation_has_failed_a_reset_is_asked_for(name: str) -> None:
+    many = gymnasium.make_vec(name, 2, "vector_entry_point", room="empty_room", threads=1)
+    one = gymnasium.make(name, room="empty_room")
+    size = many.single_action_space.shape or ()
+    base, single = many.unwrapped, one.unwrapped
+    assert isinstance(base, NavigationVectorEnv) and isinstance(single, NavigationEnv)
+    for env, break_it in (
+        (many, lambda: spoil(base)),
+        (one, lambda: single.physics.data.qpos.__setitem__(0, np.nan)),
+    ):
+        env.reset(seed=0)
+        action = np.full((2, *size) if env is many else size, 0.1, dtype=np.float32)
+        env.step(action)
+        break_it()
+        with pytest.raises(PhysicsError):
+            env.step(action)
+        with pytest.raises(gymnasium.error.ResetNeeded):
+            env.step(action)
+        env.reset()
+        env.step(action)
+        env.close()
+
+
+def spoil(env: NavigationVectorEnv) -> None:
+    """Let the simulation of world 1 diverge."""
+    lot, row = env.batch.worlds._simulations._where[1]  # pyright: ignore[reportPrivateUsage]
+    lot._qpos[row, 0] = np.nan  # pyright: ignore[reportPrivateUsage]
+
+
+def test_when_closed_it_says_so() -> None:
+    many = gymnasium.make_vec(MOTOR, 2, "vector_entry_point", threads=1)
+    many.reset(seed=7)
+    assert many.np_random_seed == 7
+    many.close()
+    with pytest.raises(gymnasium.error.ClosedEnvironmentError):
+        many.reset()
+    with pytest.raises(gymnasium.error.ClosedEnvironmentError):
+        many.step(np.zeros((2, 3)))
+
+
+@pytest.mark.parametrize("limit", [math.inf, 1.0])
+def test_the_goal_in_the_last_step_is_a_termination(limit: float) -> None:
+    one = gymnasium.make(MOTOR, room="empty_room", time_limit=limit)
+    many = gymnasium.make_vec(
+        MOTOR, 1, "vector_entry_point", room="empty_room", time_limit=limit, threads=1
+    )
+    base = one.unwrapped
+    assert isinstance(base, NavigationEnv)
+    goal = base.task.goal
+    options = {"start": (goal[0] - 0.6, goal[1], 0.0)}
+    one.reset(seed=0, options=options)
+    many.reset(seed=0, options=options)
+    ended: list[Any] = []
+    for step in range(1, 41):
+        told = one.step(np.array([1.0, 0.0, 0.0], dtype=np.float32))
+        others = many.step(np.array([[1.0, 0.0, 0.0]]))
+        assert told[2:4] == (others[2][0], others[3][0])
+        if told[2] or told[3]:
+            ended = [step, *told[2:4]]
+            break
+    assert ended == [20, True, False]
+    one.close()
     many.close()

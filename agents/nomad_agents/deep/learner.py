@@ -108,7 +108,7 @@ class _Watch(BaseCallback):
             training.decisions += 1
             training.sim_s += float(info["duration"])
             training.virtual_collisions += info["outcome"] == Outcome.VIRTUAL_COLLISION
-            training.bumper_contacts += info["outcome"] == Outcome.BUMPED
+            training.bumper_contacts += info["bumper_contact"]
             training.episodes += bool(done)
             training.reached += bool(done and not info["TimeLimit.truncated"])
         return self._look_on()
