@@ -62,6 +62,8 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
         with os.fdopen(handle, "wb") as file:
             write(file)
+            file.flush()
+            os.fsync(file.fileno())  # or a power cut could leave the new name with no content
         Path(temporary).chmod(0o644)
         Path(temporary).replace(path)
         temporary = ""

@@ -34,7 +34,7 @@ class TrainingConfig:
     max_passes : int
         Give up after so many passes.
     max_decisions : int
-        Give up after so many decisions, at the end of an episode; 0 for no limit.
+        Give up after so many decisions: at the end of an episode, with a last test; 0 for no limit.
     episode_decisions, test_decisions : int
         A learning episode, a test episode is given up after so many decisions.
     starts : tuple of int
@@ -150,8 +150,11 @@ def train(
     """
     starts = config.chosen(len(env.scene.arena.starts))
     while not training.done and training.passes <= config.max_passes:
-        if config.max_decisions and training.decisions >= config.max_decisions:
-            break
+        spent = config.max_decisions and training.decisions >= config.max_decisions
+        if spent and not training.testing:
+            if not training.next_start:
+                break
+            training.testing, training.next_start = True, 0  # a last test, of what it knows now
         began = time.perf_counter()
         before = replace(training), agent.network.arrays(), agent.plannings
         try:

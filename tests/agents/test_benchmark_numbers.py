@@ -9,7 +9,13 @@ from nomad_agents.benchmark.efficiency import sample_efficiency
 from nomad_agents.benchmark.numbers import grouped, spread_of, strata
 from nomad_agents.benchmark.presentation import terminal_tables
 from nomad_agents.benchmark.profiles import performance_profile
-from nomad_agents.benchmark.tables import driving_table, glance_table, learning_table
+from nomad_agents.benchmark.tables import (
+    driving_table,
+    glance_table,
+    learning_table,
+    quartiles,
+    until_cell,
+)
 from nomad_agents.experiments.runs import Result
 
 SCORES = st.lists(
@@ -116,7 +122,32 @@ def test_a_number_that_no_run_ever_reaches_is_called_never() -> None:
     results[0].row["decisions_to_90"] = 300
     table = learning_table(grouped(results)[0])
     assert table is not None
-    assert table.rows[0][table.headings.index("decisions until 90 %")] == "300, 1 of 6 runs"
+    assert (
+        table.rows[0][table.headings.index("decisions until 90 %")]
+        == "never, 1 of 6 runs get there"
+    )
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ([2800, 4000, 6000, np.nan, np.nan], "6000 [4000, never], 3 of 5 runs get there"),
+        ([300, 320, np.nan], "320 [310, never], 2 of 3 runs get there"),
+        ([100, 200, 300, 400], "250 [175, 325]"),
+        ([7, 7], "7"),
+        ([np.nan], "never"),
+    ],
+)
+def test_a_run_that_never_got_there_is_endless_in_median_and_quartiles(
+    values: list[float], text: str
+) -> None:
+    assert until_cell(np.array(values), 0) == text
+
+
+@given(st.lists(st.floats(0, 1e6), min_size=1, max_size=9))
+def test_quartiles_are_numpys_where_all_are_finite(values: list[float]) -> None:
+    expected = np.percentile(values, [25, 50, 75])
+    np.testing.assert_allclose(quartiles(np.array(values)), expected, rtol=1e-12)
 
 
 def curve(*points: tuple[int, float], seed: int = 0) -> Result:

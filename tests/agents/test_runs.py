@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +13,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from known_work import die_at_two, draw, draw_slowly, fail_at_two, runs
-from nomad_agents.experiments.runs import Result, do_runs, stored_result
+from nomad_agents.experiments import runs as module
+from nomad_agents.experiments.digest import digest
+from nomad_agents.experiments.runs import Result, Run, do_runs, stored_result
 
 from nomad_mj.errors import ConfigError, OutputError, WorkerError
 
@@ -140,7 +143,7 @@ def test_killed_at_any_moment_it_goes_on_to_the_same_numbers(tmp_path: Path, num
     assert numbers(results) == numbers([draw(run, tmp_path) for run in runs(40)])
 
 
-def test_rooms_of_the_same_name_or_edited_do_not_share_a_result(
+def test_a_result_is_that_of_a_room_wherever_it_lies_but_not_of_an_edited_one(
     tmp_path: Path, small_room: Path
 ) -> None:
     content = small_room.read_text()
@@ -152,6 +155,49 @@ def test_rooms_of_the_same_name_or_edited_do_not_share_a_result(
         Path(run.room).write_text(content)
     do_runs([one], draw, tmp_path, 1, lambda _: None)
     assert one.file_name == other.file_name
-    assert stored_result(one, tmp_path) is not None and stored_result(other, tmp_path) is None
+    assert stored_result(one, tmp_path) is not None
+    assert stored_result(other, tmp_path) is not None
     Path(one.room).write_text(content.replace("</mujoco>", "<!-- edited --></mujoco>"))
     assert stored_result(one, tmp_path) is None
+
+
+def test_a_digest_is_of_all_files_that_a_model_is_made_of(tmp_path: Path) -> None:
+    folder = tmp_path / "meshes"
+    folder.mkdir()
+    (tmp_path / "part.xml").write_text('<mujoco><include file="deeper.xml"/></mujoco>')
+    (tmp_path / "deeper.xml").write_text("<mujoco/>")
+    (folder / "box.stl").write_bytes(b"\0\1")
+    model = tmp_path / "model.xml"
+    model.write_text(
+        "<mujoco><compiler meshdir=\"meshes\"/><include file = 'part.xml'/>"
+        '<asset><mesh file="box.stl"/><mesh file="nowhere.stl"/></asset></mujoco>'
+    )
+    told = [digest(model)]
+    for path in (tmp_path / "deeper.xml", folder / "box.stl", model):
+        path.write_bytes(path.read_bytes() + b" ")
+        told.append(digest(model))
+    assert len(set(told)) == 4
+
+
+def in_this_process(
+    work: Callable[[Run], Result], runs: Sequence[Run], jobs: int
+) -> Generator[tuple[Run, Result], None, None]:
+    for run in runs:
+        yield run, work(run)
+
+
+def test_a_room_edited_while_a_run_is_under_way_is_not_the_runs(
+    tmp_path: Path, small_room: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    room = tmp_path / "room.xml"
+    room.write_text(small_room.read_text())
+    run = replace(runs(1)[0], room=str(room))
+
+    monkeypatch.setattr(module, "do_in_processes", in_this_process)
+
+    def work(run: Run, folder: Path) -> Result:
+        room.write_text(room.read_text() + " ")
+        return draw(run, folder)
+
+    do_runs([run], work, tmp_path, 1, lambda _: None)
+    assert stored_result(run, tmp_path) is None

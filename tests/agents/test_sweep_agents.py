@@ -97,7 +97,7 @@ def test_a_checkpoint_is_driven_beside_those_that_learn(small_room: Path, tmp_pa
         agent = ReactivePlanner(env.scene.robot.layout, FAITHFUL)
     save_checkpoint(path, agent, "small", "omnibot", asdict(Training()) | {"seed": 0})
     grid = grid_of(small_room, f"agent={path},reactive_planner", "k_ind=0.02,0.1")
-    assert sources(grid)["files"].keys() == {"small.xml", "omnibot.xml", "new.npz"}
+    assert sources(grid)["files"].keys() == {f"room {small_room}", "robot omnibot", str(path)}
     rows = done(grid)
     assert [dict(run.cell)["k_ind"] for run in rows] == [None, 0.02, 0.1]
     learnt = [row.get("learn_decisions", 0) for row in rows.values()]

@@ -31,6 +31,7 @@ def row(run: SweepRun) -> dict[str, object]:
 
 def filled(folder: Path, count: int, *, fold: bool) -> Store:
     store = open_store(folder, GRID, SOURCES)
+    store.fold()
     for run in store.missing()[:count]:
         store.add(run, row(run))
     if fold:
@@ -66,11 +67,12 @@ def test_killed_between_table_and_journal_nothing_counts_twice(tmp_path: Path) -
     filled(tmp_path, 4, fold=False)
     journal = tmp_path / "sweep.journal"
     lines = journal.read_bytes()
-    open_store(tmp_path, GRID, SOURCES)  # takes them into the table
+    open_store(tmp_path, GRID, SOURCES).fold()  # takes them into the table
     assert not journal.exists()
     journal.write_bytes(lines)
     (tmp_path / f".{TABLE}.half").write_bytes(b"PAR1")
     store = open_store(tmp_path, GRID, SOURCES)
+    store.fold()
     assert len(store.rows) == 4 == pq.read_table(tmp_path / TABLE).num_rows
     assert sorted(path.name for path in tmp_path.iterdir()) == [TABLE]
 
@@ -91,7 +93,23 @@ def test_seeds_and_values_may_be_added(tmp_path: Path) -> None:
     store = open_store(tmp_path, more, SOURCES)
     assert len(store.rows) == len(GRID) and len(store.grid) == 24
     assert len(store.missing()) == 24 - len(GRID)
+    store.fold()
     assert len(open_store(tmp_path, Grid(more.axes, 1), SOURCES).grid) == 24
+
+
+def test_a_sweep_that_has_no_results_yet_gives_way_to_any(tmp_path: Path) -> None:
+    open_store(tmp_path, Grid((("grazing", (0.0,)),), 1), SOURCES).fold()
+    assert open_store(tmp_path, GRID, SOURCES).grid == GRID
+
+
+def test_a_journal_whose_table_is_gone_is_not_thrown_away(tmp_path: Path) -> None:
+    filled(tmp_path, 4, fold=False)
+    (tmp_path / TABLE).rename(tmp_path / "moved.parquet")
+    for _ in range(2):
+        with pytest.raises(OutputError, match=r"sweep.journal' holds results .* put that back"):
+            open_store(tmp_path, GRID, SOURCES)
+    (tmp_path / "moved.parquet").rename(tmp_path / TABLE)
+    assert len(open_store(tmp_path, GRID, SOURCES).rows) == 4
 
 
 @pytest.mark.parametrize(

@@ -131,6 +131,26 @@ def test_a_pass_learns_from_every_start_then_tests_every_start(
     assert (report["solved"], report["starts"], report["passes"]) == (3, 3, 2)
 
 
+@pytest.mark.parametrize(
+    ("spent_in", "asked"), [(1, [(0, 3)]), (3, [(0, 3)]), (5, [(0, 3), (0, 3)])]
+)
+def test_a_training_that_has_spent_its_decisions_is_asked_once_more(
+    env: PathFinding, monkeypatch: pytest.MonkeyPatch, spent_in: int, asked: list[tuple[int, int]]
+) -> None:
+    episodes: list[bool] = []
+
+    def episode(env: PathFinding, agent: ReactivePlanner, **given: Any) -> Episode:
+        episodes.append(given.get("explore") is not None)
+        return Episode(False, 10, 7, 0, 0, 0, 1.0, 1.0, 0.1)
+
+    monkeypatch.setattr(module, "run_episode", episode)
+    agent, training = new(env)
+    train(env, agent, TrainingConfig(max_decisions=10 * spent_in), training)
+    assert episodes.count(True) == spent_in and training.decisions == 10 * spent_in
+    assert episodes.count(False) == 3 * len(asked) and not episodes[-1]
+    assert (training.solved, training.tested, training.done) == (*asked[-1], False)
+
+
 def test_short_tests_leave_learning_as_it_is(env: PathFinding, whole: Learnt) -> None:
     agent, training = new(env)
     train(env, agent, TrainingConfig(seed=1, whole_tests=False), training)

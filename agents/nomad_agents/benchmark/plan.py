@@ -69,6 +69,9 @@ def plan_runs(plan: Plan, folder: Path) -> list[BenchmarkRun]:
     """
     agents = dict.fromkeys(find_learner(spec) for spec in plan.agents)
     rooms = {case: write_room(case, folder) for each in plan.sets for case in each.cases}
+    for name in (names := [Path(robot).stem for robot in dict.fromkeys(plan.robots)]):
+        if names.count(name) > 1:
+            raise ConfigError(f"robots: two are called {name!r}, and results are kept by name")
     for room in dict.fromkeys(rooms.values()):
         for robot in plan.robots:
             build_scene(room, robot)  # whatever is wrong with them is said now, and once

@@ -14,6 +14,7 @@ import numpy as np
 import nomad_mj
 from nomad_agents.benchmark.checks import Checks, until_mastered
 from nomad_agents.benchmark.conditions import find_condition
+from nomad_agents.deep.extra import DEEP_PACKAGES
 from nomad_agents.evaluation import Trial
 from nomad_agents.experiments.measures import assess, episode_rows
 from nomad_agents.experiments.runs import Result, Row, Run
@@ -58,6 +59,18 @@ class BenchmarkRun(Run):
         learner = self.learner
         plain = self.config == learner.variants[0] and not learner.learns
         return self.agent if plain else f"{self.agent}:{self.config}"
+
+    def packages(self) -> tuple[str, ...]:
+        """Return whose versions its numbers depend on."""
+        return (*super().packages(), *(DEEP_PACKAGES if self.learner.deep else ()))
+
+    def identity(self) -> Row:
+        """Return what tells it from other runs: of who learns nothing, nothing of learning."""
+        own = super().identity()
+        if not self.learner.learns:
+            for name in ("budget", "check_starts", "whole_curves"):
+                del own[name]
+        return own
 
     def parameters(self) -> Row:
         """Return what agent and condition stand for."""

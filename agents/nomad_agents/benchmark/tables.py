@@ -3,18 +3,30 @@
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 from nomad_agents.benchmark.numbers import Group, has, spread_of, strata
 from nomad_agents.experiments.runs import Result
-from nomad_agents.experiments.tables import TextTable, mean_cell, median_cell, total_cell
+from nomad_agents.experiments.tables import (
+    TextTable,
+    mean_cell,
+    median_cell,
+    number_cell,
+    total_cell,
+)
+from nomad_mj.types import FloatArray
 
 
 class Column(NamedTuple):
-    """A column: its heading, the number's name in the rows, decimals, and what is said of it."""
+    """A column: its heading, the number's name in the rows, decimals, and what is said of it.
+
+    `until`: of a number that a run may never have, median and quartiles in which it is endless.
+    """
 
     heading: str
     key: str
     digits: int
-    kind: Literal["mean", "median", "total"]
+    kind: Literal["mean", "median", "total", "until"]
 
 
 AT_A_GLANCE = {
@@ -34,21 +46,21 @@ DRIVING = (
 )
 LEARNING = (
     Column("runs that solve every start", "learn_solved_all", 0, "total"),
-    Column("decisions until then", "decisions_to_test", 0, "median"),
-    Column("simulated hours until then", "sim_h_to_test", 2, "median"),
-    Column("decisions until 90 %", "decisions_to_90", 0, "median"),
-    Column("simulated hours until 90 %", "sim_h_to_90", 2, "median"),
-    Column("decisions until 90 % unaided", "unaided_decisions_to_90", 0, "median"),
+    Column("decisions until then", "decisions_to_test", 0, "until"),
+    Column("simulated hours until then", "sim_h_to_test", 2, "until"),
+    Column("decisions until 90 %", "decisions_to_90", 0, "until"),
+    Column("simulated hours until 90 %", "sim_h_to_90", 2, "until"),
+    Column("decisions until 90 % unaided", "unaided_decisions_to_90", 0, "until"),
     Column("decisions in all", "learn_decisions", 0, "median"),
     Column("virtual collisions while learning", "learn_virtual_collisions", 0, "median"),
     Column("bumper contacts while learning", "learn_bumper_contacts", 0, "median"),
-    Column("minutes of computing", "wall_min", 1, "median"),
+    Column("minutes of computing, checks included", "wall_min", 1, "median"),
 )
 HEADLINE = (
     Column("goal reached", "success_rate", 2, "mean"),
     Column("SPL", "spl", 2, "mean"),
-    Column("decisions until 90 %", "decisions_to_90", 0, "median"),
-    Column("decisions until 90 % unaided", "unaided_decisions_to_90", 0, "median"),
+    Column("decisions until 90 %", "decisions_to_90", 0, "until"),
+    Column("decisions until 90 % unaided", "unaided_decisions_to_90", 0, "until"),
     Column("virtual collisions while learning", "learn_virtual_collisions", 0, "median"),
 )
 
@@ -110,4 +122,32 @@ def _cell(results: Sequence[Result], column: Column) -> str:
         return total_cell(values)
     if column.kind == "mean":
         return mean_cell(spread_of(results, column.key), column.digits)
-    return median_cell(values, column.digits) or "never"
+    if column.kind == "until":
+        return until_cell(np.concatenate(values), column.digits)
+    return median_cell(values, column.digits)
+
+
+def until_cell(values: FloatArray, digits: int) -> str:
+    """Return median and quartiles of values (runs,), NaN where a run never got there.
+
+    It says how many did if not all: leaving them out would make quick of who fails often.
+    """
+    got = int(np.count_nonzero(~np.isnan(values)))
+    if not got:
+        return "never"
+    over = quartiles(np.where(np.isnan(values), np.inf, values))
+    cells = ["never" if np.isinf(value) else number_cell(value, digits) for value in over]
+    text = cells[1] if len(set(cells)) == 1 else f"{cells[1]} [{cells[0]}, {cells[2]}]"
+    return text if got == len(values) else f"{text}, {got} of {len(values)} runs get there"
+
+
+def quartiles(values: FloatArray) -> tuple[float, float, float]:
+    """Return the quartiles of values (runs,), of which some may be infinite, none negatively."""
+    ordered = np.sort(values)
+    places = (len(values) - 1) * np.array([0.25, 0.5, 0.75])
+    below, above = ordered[np.floor(places).astype(int)], ordered[np.ceil(places).astype(int)]
+    share = places - np.floor(places)
+    with np.errstate(invalid="ignore"):
+        between = np.where(np.isinf(above) & (share > 0), np.inf, below + share * (above - below))
+    first, middle, third = np.where(below == above, below, between).tolist()
+    return first, middle, third

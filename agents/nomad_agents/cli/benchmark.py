@@ -21,7 +21,7 @@ from nomad_mj.errors import ConfigError
 
 _QUICK_SETS, _QUICK_CASES = ("convex", "wide", "concave"), 1
 _QUICK_AGENTS = ("straight", "planner", "reactive_planner:tuned")
-_QUICK_STARTS, _QUICK_CHECK_STARTS, _QUICK_BUDGET = 8, 4, 300
+_QUICK = {"seeds": 1, "starts": 8, "check_starts": 4, "budget": 300}  # where nothing is said
 
 
 @dataclass(frozen=True)
@@ -117,13 +117,11 @@ class Benchmark:
         )
         if not self.quick:
             return plan
-        return replace(
-            plan,
-            seeds=1,
-            starts=min(plan.starts, _QUICK_STARTS),
-            check_starts=min(plan.check_starts, _QUICK_CHECK_STARTS),
-            budget=min(plan.budget, _QUICK_BUDGET),
-        )
+        usual = Benchmark()
+        left = {
+            name: n for name, n in _QUICK.items() if getattr(self, name) == getattr(usual, name)
+        }
+        return replace(plan, **left)
 
     def _results(self, runs: list[BenchmarkRun], folder: Path, screen: Console) -> list[Result]:
         """Return the results, with a progress bar over all runs."""

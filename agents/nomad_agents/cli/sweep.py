@@ -96,6 +96,7 @@ class Sweep:
             if missing:
                 with screen.status("") as status:
                     check_grid(grid, status.update)
+                store.fold()  # a folder that cannot be written is told of before the work
                 _do(store, missing, pool, screen)
         return store
 

@@ -2,6 +2,7 @@
 
 from nomad_agents.extras import need
 
+DEEP_PACKAGES = ("torch", "stable-baselines3")  # whose versions change what is learnt
 CPU_BUILD = "--extra-index-url https://download.pytorch.org/whl/cpu"
 
 

@@ -42,9 +42,8 @@ def export(results: Sequence[Result], folder: Path, *, parquet: bool = False) ->
         They cannot be written.
     """
     ordered = sorted(results, key=lambda result: tuple(asdict(result.run).values()))
-    versions = {name: version(name) for name in PACKAGES}
     runs = [
-        _joined({**asdict(result.run), **versions, **result.machine}, result.row)
+        _joined({**asdict(result.run), **_versions(result.run), **result.machine}, result.row)
         for result in ordered
     ]
     episodes = [
@@ -78,7 +77,13 @@ def write_parquet(rows: Sequence[Row], path: Path) -> None:
 
 def _joined(identity: Row, numbers: Row) -> Row:
     """Return both in one row; a number called like a column before it gets a longer name."""
-    return identity | {f"row_{k}" if k in identity else k: v for k, v in numbers.items()}
+    # NaN: it has none.
+    held = {name: value if value == value else None for name, value in numbers.items()}
+    return identity | {f"row_{k}" if k in identity else k: v for k, v in held.items()}
+
+
+def _versions(run: Run) -> Row:
+    return {name: version(name) for name in run.packages()}
 
 
 def _write(rows: Sequence[Row], first: Sequence[str], path: Path) -> None:

@@ -3,7 +3,6 @@
 A run that is on file is not done again: what was killed goes on where it was, to the same rows.
 """
 
-import hashlib
 import json
 import platform
 import re
@@ -19,6 +18,7 @@ from typing import Any
 import cattrs
 
 from nomad_agents.checkpoint import write_atomically
+from nomad_agents.experiments.digest import digest
 from nomad_agents.experiments.pool import do_in_processes
 from nomad_agents.registry import find_config
 from nomad_mj.assets import find_robot, find_room
@@ -26,6 +26,7 @@ from nomad_mj.errors import OutputError
 
 Row = dict[str, Any]
 PACKAGES = ("nomad-mj", "mujoco", "numpy")
+_EDITION = 2  # one more whenever the same run comes to count or measure otherwise
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,15 @@ class Run:
         """
         return cattrs.unstructure(find_config(self.config))
 
+    def packages(self) -> tuple[str, ...]:
+        """Return whose versions its numbers depend on."""
+        return PACKAGES
+
+    def identity(self) -> Row:
+        """Return what tells it from other runs, wherever its files lie."""
+        own = {"room": find_room(self.room).stem, "robot": find_robot(self.robot).stem}
+        return asdict(self) | own
+
 
 @dataclass
 class Result:
@@ -99,15 +109,11 @@ class Result:
 
 def _key(run: Run) -> Row:
     """Return what a file must agree with to be this run's: no stale numbers of another version."""
-    key = {**asdict(run), "packages": {name: version(name) for name in PACKAGES}}
+    key = {**run.identity(), "edition": _EDITION}
+    key["packages"] = {name: version(name) for name in run.packages()}
     key["parameters"] = run.parameters()
     key["files"] = [digest(find_room(run.room)), digest(find_robot(run.robot))]
     return json.loads(json.dumps(key))
-
-
-def digest(path: Path) -> str:
-    """Return what tells a file's content from any other; what it includes is not looked at."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def stored_result(run: Run, folder: Path) -> Result | None:
@@ -133,8 +139,8 @@ def stored_result(run: Run, folder: Path) -> Result | None:
 _CONTENTS = ("row", "episodes", "curve", "pictures", "machine")
 
 
-def _store(result: Result, folder: Path) -> None:
-    held = {"key": _key(result.run), **{name: getattr(result, name) for name in _CONTENTS}}
+def _store(result: Result, key: Row, folder: Path) -> None:
+    held = {"key": key, **{name: getattr(result, name) for name in _CONTENTS}}
     text = json.dumps(held, indent=1).encode()
     write_atomically(folder / result.run.file_name, lambda file: file.write(text))
 
@@ -164,10 +170,10 @@ def describe_machine(stopwatch: Stopwatch) -> Row:
 
 
 def _timed(work: Callable[[Run, Path], Result], folder: Path, run: Run) -> Result:
-    stopwatch = Stopwatch()
+    stopwatch, key = Stopwatch(), _key(run)  # of the files as they are when it begins
     result = work(run, folder)
     result.machine |= describe_machine(stopwatch)
-    _store(result, folder)
+    _store(result, key, folder)
     return result
 
 

@@ -115,8 +115,9 @@ class ReactionLearner(Learner):
                 check(latest)
         spent = _spent(latest) | {"sim_s": learnt_s}
         row |= {f"learn_{name}": value for name, value in spent.items()}
-        if row["learn_solved_all"]:
-            row |= {"decisions_to_test": latest.decisions, "sim_s_to_test": learnt_s}
+        solved = row["learn_solved_all"]
+        row["decisions_to_test"] = latest.decisions if solved else None
+        row["sim_s_to_test"] = learnt_s if solved else None
         return agent, row
 
     def _until(self, lesson: Lesson, starts: int) -> TrainingConfig:

@@ -22,7 +22,9 @@ AGENT, CONFIG, STARTS, MAX_DECISIONS = "agent", "config", "starts", "evaluate.ma
 OBSERVATION, DECISIONS = "observation", "decisions"
 TRAIN = "train."
 USUAL_AGENT = ReactivePlanner.name
-_NOT_SWEPT = ("seed", "starts")  # of a training: --seeds, and the room's
+# Of a training: --seeds, the room's, and what changes no number.
+_NOT_SWEPT = ("seed", "starts", "whole_tests")
+_MOST = 2**63  # a whole number of a table
 _SCALARS = (bool, int, float, str)
 _SIZES = tuple[int, ...]
 _MEANT = {
@@ -161,7 +163,7 @@ def read_value(option: Option, given: Any) -> Value:
             if option.kind == _SIZES:
                 return ",".join(str(size) for size in sizes(text))
             number = option.kind(text) if option.kind is not bool else math.nan
-            if math.isfinite(number):
+            if math.isfinite(number) and (option.kind is not int or abs(number) < _MOST):
                 return number
         except (ValueError, OverflowError):
             pass

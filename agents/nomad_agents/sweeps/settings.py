@@ -9,7 +9,8 @@ from nomad_agents.agent import Agent
 from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.deep import LEARNERS as DEEP
 from nomad_agents.deep.training import require_budget
-from nomad_agents.experiments.runs import Row, digest
+from nomad_agents.experiments.digest import digest
+from nomad_agents.experiments.runs import Row
 from nomad_agents.learners import (
     LEARNERS,
     DeepLearner,

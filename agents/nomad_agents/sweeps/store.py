@@ -12,7 +12,7 @@ import os
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -120,13 +120,7 @@ class Store:
         """
         about = json.dumps({"grid": as_data(self.grid), "sources": self.sources})
         table = as_table(self.grid, self.rows).replace_schema_metadata({_ABOUT: about})
-
-        def write(file: IO[bytes]) -> None:
-            pq.write_table(table, file)
-            file.flush()
-            os.fsync(file.fileno())
-
-        write_atomically(self._folder / TABLE, write)
+        write_atomically(self._folder / TABLE, lambda file: pq.write_table(table, file))
         (self._folder / _JOURNAL).unlink(missing_ok=True)
         self._lines = 0
 
@@ -160,10 +154,15 @@ def read_store(folder: Path) -> Store | None:
     OutputError
         A file of it is damaged or of something else.
     """
-    path = folder / TABLE
+    path, journal = folder / TABLE, folder / _JOURNAL
     if not path.exists():
+        if journal.exists() and journal.stat().st_size:
+            raise OutputError(
+                f"{str(journal)!r} holds results of a sweep whose {TABLE} is not there: put that "
+                "back, or remove both"
+            )
         return None
-    journalled = _journalled(folder / _JOURNAL)  # first: a sweep at work may empty it by now
+    journalled = _journalled(journal)  # first: a sweep at work may empty it by now
     try:
         table = pq.read_table(path)
         about = json.loads(table.schema.metadata[_ABOUT])
@@ -207,24 +206,22 @@ def _parsed(line: bytes, number: int, path: Path) -> tuple[SweepRun, Row]:
 def open_store(folder: Path, grid: Grid, sources: Row) -> Store:
     """Return the store of a grid in a folder, with what is done of it; to be held `locked`.
 
-    Seeds and values can be more than they were.
+    Seeds and values can be more than they were. Nothing is written before `Store.fold`.
 
     Raises
     ------
     ConfigError
         The folder holds another sweep.
     OutputError
-        It cannot be written, or holds something damaged.
+        It holds something damaged.
     """
     held = read_store(folder)
-    if held is not None:
+    if held is not None and held.rows:
         _refuse_other(folder, held, grid, sources)
         grid = _joined(held.grid, grid)
     for left in folder.glob(f".{TABLE}.*"):
         left.unlink(missing_ok=True)  # of a process that was killed while it wrote
-    store = Store(folder, grid, sources, held.rows if held else {})
-    store.fold()
-    return store
+    return Store(folder, grid, sources, held.rows if held else {})
 
 
 def _refuse_other(folder: Path, held: Store, grid: Grid, sources: Row) -> None:

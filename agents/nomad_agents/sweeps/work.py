@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import nomad_mj
+from nomad_agents.deep.extra import DEEP_PACKAGES
 from nomad_agents.evaluation import draw_starts, evaluate, read_starts, summarise
+from nomad_agents.experiments.digest import digest
 from nomad_agents.experiments.measures import UNSEEN_SEED
-from nomad_agents.experiments.runs import PACKAGES, Row, Stopwatch, describe_machine, digest
+from nomad_agents.experiments.runs import PACKAGES, Row, Stopwatch, describe_machine
 from nomad_agents.learners import LEARNERS, Lesson
 from nomad_agents.registry import AGENTS, make_agent
 from nomad_agents.sweeps.grid import Cell, Grid, SweepRun, describe
@@ -23,7 +25,6 @@ from nomad_mj.types import FloatArray
 
 MACHINE = "machine_"
 VERSIONS = "version_"
-_DEEP_PACKAGES = ("torch", "stable-baselines3")
 
 
 def do_run(wanted: Row, run: SweepRun) -> Row:
@@ -62,6 +63,7 @@ def do_run(wanted: Row, run: SweepRun) -> Row:
     machine = describe_machine(stopwatch)
     packages = package_versions([settings.agent])
     versions = {f"{VERSIONS}{name}": value for name, value in packages.items()}
+    row = {name: value for name, value in row.items() if value == value}  # NaN: it has none
     return row | versions | {f"{MACHINE}{name}": value for name, value in machine.items()}
 
 
@@ -78,7 +80,7 @@ def _require_same(wanted: Row, run: SweepRun) -> None:
 def package_versions(agents: Sequence[Value]) -> dict[str, str]:
     """Return the versions of the packages that the numbers of some agents depend on."""
     deep = any(learner.deep for name, learner in LEARNERS.items() if name in agents)
-    return {name: version(name) for name in (*PACKAGES, *(_DEEP_PACKAGES if deep else ()))}
+    return {name: version(name) for name in (*PACKAGES, *(DEEP_PACKAGES if deep else ()))}
 
 
 def _lesson(env: PathFinding, settings: Settings) -> Lesson:
@@ -147,13 +149,14 @@ def sources(grid: Grid) -> Row:
     """Return what else numbers depend on: versions of packages, content of files."""
     values, agents = dict(grid.axes), _agents(grid)
     task = settle({}, 0).task
-    files = [find_room(str(v)) for v in values.get("room", (task.room,))]
-    files += [find_robot(str(v)) for v in values.get("robot", (task.robot,))]
-    files += [Path(str(v)).expanduser() for v in agents if v not in LEARNERS]
-    files += [Path(str(v)).expanduser() for v in values.get(STARTS, ()) if not str(v).isdigit()]
+    files = {f"room {v}": find_room(str(v)) for v in values.get("room", (task.room,))}
+    files |= {f"robot {v}": find_robot(str(v)) for v in values.get("robot", (task.robot,))}
+    own = [v for v in agents if v not in LEARNERS]
+    own += [v for v in values.get(STARTS, ()) if not str(v).isdigit()]
+    files |= {str(v): Path(str(v)).expanduser() for v in own}
     return {
         "packages": package_versions(agents),
-        "files": {path.name: digest(path) for path in files if path.is_file()},
+        "files": {name: digest(path) for name, path in files.items() if path.is_file()},
     }
 
 
