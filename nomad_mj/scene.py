@@ -1,20 +1,18 @@
 """Put a robot into a room: two MJCF files and the shared scene become one compiled model."""
 
 import copy
-import warnings
-from collections.abc import Generator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 import mujoco
+import numpy as np
 import shapely
 
 from nomad_mj.arenas import Arena, FloorPlan, check_arena, near_model
 from nomad_mj.assets import find_robot, find_room, models_dir
 from nomad_mj.errors import ConfigError, ModelError
-from nomad_mj.guard import check_size
 from nomad_mj.movers import (
     Moving,
     MovingGoal,
@@ -23,14 +21,11 @@ from nomad_mj.movers import (
     place_goal,
     read_moving,
 )
+from nomad_mj.reading import quietly, read_robot, read_room
 from nomad_mj.robots import (
     PREFIX,
     RobotDescription,
-    adopt,
     describe_robot,
-    read_sheet,
-    report_surfaces,
-    set_rays_per_cone,
     unclip_surfaces,
 )
 
@@ -69,54 +64,28 @@ class Scene:
         """Return the model to simulate: of a large room a new copy of `near_model`."""
         return self.model if self.near_model is None else copy.copy(self.near_model)
 
+    @property
+    def shown_bounds(self) -> "tuple[float, float, float, float]":
+        """What a picture of the room shows, (x0, y0, x1, y1) [m]: all that stands in it.
+
+        Where nothing does, goal and starts with a metre around.
+        """
+        if self.plan.footprints:
+            x0, y0, x1, y1 = self.plan.bounds.tolist()
+            return x0, y0, x1, y1
+        places = np.concatenate([self.arena.starts[:, :2], self.arena.goal[None]])
+        (x0, y0), (x1, y1) = (
+            (places.min(axis=0) - 1.0).tolist(),
+            (places.max(axis=0) + 1.0).tolist(),
+        )
+        return x0, y0, x1, y1
+
     @cached_property
     def free_space(self) -> shapely.Polygon:
         """Where the robot's centre can be and still reach the goal, prepared for queries."""
         space = self.plan.free_space(self.robot.layout.radius, self.arena.goal)
         shapely.prepare(space)
         return space
-
-
-@contextmanager
-def _quietly() -> Generator[list[str], None, None]:
-    """Collect the engine's warnings instead of printing them."""
-    said: list[str] = []
-    previous = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(said.append)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)
-            yield said
-    finally:
-        mujoco.set_mju_user_warning(previous)
-
-
-def _read(kind: str, path: Path) -> mujoco.MjSpec:
-    check_size(kind, path)
-    with _quietly() as said:
-        try:
-            spec = mujoco.MjSpec.from_file(str(path))
-            spec.copy().compile()
-        except (ValueError, RuntimeError, UnicodeDecodeError) as error:
-            reason = " ".join(str(error).split())
-            if path.suffix != ".xml":
-                reason += "; its name must end in .xml (nomad-mj room makes one of a map)"
-            raise ModelError(f"{kind} file {str(path)!r} is not valid MJCF: {reason}") from None
-    if any("NaN" in warning for warning in said):
-        raise ModelError(f"{kind} file {str(path)!r} holds a NaN; give a number in its place")
-    return spec
-
-
-def _read_robot(
-    path: Path, rays_per_cone: int | None, specular_rings: Sequence[str]
-) -> mujoco.MjSpec:
-    """Return a robot with the rays that the options ask for."""
-    spec = _read("robot", path)
-    adopt(spec, read_sheet(path), path.stem)
-    if rays_per_cone is not None:
-        set_rays_per_cone(spec, rays_per_cone)
-    report_surfaces(spec, specular_rings)
-    return spec
 
 
 def _sample_per_control_step(spec: mujoco.MjSpec, sub_steps: int) -> None:
@@ -143,7 +112,7 @@ def _join(
     """
     try:
         spec = mujoco.MjSpec.from_file(str(models_dir() / "scene.xml"))
-        with _quietly():  # scene.xml owns the options: a file's own serve only where it is alone
+        with quietly():  # scene.xml owns the options: a file's own serve only where it is alone
             spec.attach(room, prefix=ROOM_PREFIX, frame=spec.worldbody.add_frame())
             spec.attach(robot, prefix=PREFIX, frame=spec.worldbody.add_frame())
             _sample_per_control_step(spec, round(CONTROL_TIMESTEP / spec.option.timestep))
@@ -168,7 +137,7 @@ def _near_model(
     spec: mujoco.MjSpec, model: mujoco.MjModel, robot: RobotDescription
 ) -> mujoco.MjModel | None:
     """Return what to simulate of a large room; the spec is changed."""
-    with _quietly():
+    with quietly():
         few = near_model(spec, model, robot.reach)
     if few is not None:
         _time_rays(few)
@@ -224,8 +193,8 @@ def build_scene(
     """
     _check_configs(moving_goal, moving_obstacles)
     room_path, robot_path = find_room(room), find_robot(robot)
-    room_spec = _read("room", room_path)
-    robot_spec = _read_robot(robot_path, rays_per_cone, specular_rings)
+    room_spec = read_room(room_path)
+    robot_spec = read_robot(robot_path, rays_per_cone, specular_rings)
     if goal is not None or moving_goal is not None:
         place_goal(room_spec, goal, moving_goal is not None)
     added = add_obstacles(room_spec, moving_obstacles) if moving_obstacles else ()

@@ -167,3 +167,15 @@ def test_the_engine_is_silent_from_a_fresh_process_too(own_room: OwnRoom, tmp_pa
         check=False,
     )
     assert (ran.returncode, ran.stdout, ran.stderr) == (0, "", "")
+
+
+def test_a_rooms_own_floor_and_lights_serve_where_it_is_alone(own_room: OwnRoom) -> None:
+    floor = '<light pos="0 0 3"/><geom name="ground" type="plane" size="5 5 .1" friction="1"/>'
+    plain, dressed = build_scene(own_room(), "nomad200"), build_scene(own_room(floor), "nomad200")
+    assert dressed.model.ngeom == plain.model.ngeom and dressed.model.nlight == plain.model.nlight
+
+
+def test_a_plane_that_is_no_floor_is_refused(own_room: OwnRoom) -> None:
+    raised = own_room('<geom name="stage" type="plane" size="1 1 .1" pos="0 0 .3"/>')
+    with pytest.raises(ModelError, match="plane 'stage' is no floor at height 0; write"):
+        build_scene(raised, "nomad200")

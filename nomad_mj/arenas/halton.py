@@ -5,6 +5,7 @@
 
 import argparse
 from collections.abc import Sequence
+from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -12,6 +13,7 @@ import numpy.typing as npt
 
 from nomad_mj.arenas.floor_plan import FloorPlan
 from nomad_mj.errors import NomadError, StartError
+from nomad_mj.guard import check_size
 from nomad_mj.types import FloatArray
 
 RADIUS = 0.265
@@ -85,8 +87,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--radius", type=float, default=RADIUS, help="of the robot [m]")
     options = parser.parse_args(arguments)
     try:
+        check_size("room", Path(options.room))
         model = mujoco.MjModel.from_xml_path(options.room)
-        goal = model.site("goal").pos[:2]
+        data = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+        goal = data.site("goal").xpos[:2]
         plan = FloorPlan.from_model(model, ROBOT_HEIGHT)
         places = halton_starts(plan, options.count, goal, options.radius)
     except (ValueError, KeyError, NomadError) as error:

@@ -14,8 +14,8 @@ from nomad_mj.batch.world import World
 from nomad_mj.errors import ConfigError, NomadError, StartError
 from nomad_mj.scene import Scene
 from nomad_mj.tasks import MotorConfig, MotorTask, NavigationPhysics, Start, resolve_start
-from nomad_mj.tasks.motor import seed_sequence
 from nomad_mj.tasks.ranging import RangingOfMany
+from nomad_mj.tasks.seeds import seed_sequence
 from nomad_mj.types import FloatArray, IntArray
 
 Seed = int | np.random.SeedSequence | None

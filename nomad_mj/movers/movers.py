@@ -92,7 +92,7 @@ class Movers:
         StartError
             There is no place for one of the obstacles.
         """
-        self._robot = robot
+        self._robot, self.goal = robot, self.start_goal  # the obstacles keep clear of both
         places: list[tuple[float, float]] = []
         for index, body in enumerate(self._moving.obstacles):
             places.append(self._find_place(index, body, places, obstacles_rng))
@@ -104,7 +104,6 @@ class Movers:
         self._stroll = Stroll(walkers, self._walk.places, self._floor.choose, free)
         self.obstacles = self._walk.array()
         goal = self._moving.goal
-        self.goal = self.start_goal
         self._goal_walk = Walk([goal.drift], [self.goal], goal_rng) if goal else None
 
     def advance(self, seconds: float, robot: tuple[float, float]) -> None:
@@ -226,3 +225,24 @@ def _along(
     leg, share = rng.integers(0, len(way), 16), rng.random((16, 1))
     places = points[leg] + share * (points[(leg + 1) % len(way)] - points[leg])
     return [(x, y) for x, y in places.tolist()]
+
+
+def find_room_for(movers: Movers, starts: FloatArray) -> None:
+    """Try whether all that moves finds a place beside a robot at one at least of starts (n, 3).
+
+    Raises
+    ------
+    StartError
+        At none of them.
+    """
+    errors = [error for x, y, _ in starts.tolist() if (error := _error_at(movers, (x, y)))]
+    if len(errors) == len(starts):
+        raise errors[0]
+
+
+def _error_at(movers: Movers, robot: tuple[float, float]) -> StartError | None:
+    try:
+        movers.start(robot, np.random.default_rng(0), np.random.default_rng(0))
+    except StartError as error:
+        return error
+    return None

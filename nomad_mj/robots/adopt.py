@@ -5,6 +5,7 @@ needs no data sheet.
 """
 
 import math
+import re
 
 import mujoco
 import numpy as np
@@ -13,7 +14,7 @@ from nomad_mj.errors import ModelError
 from nomad_mj.robots.sheet import MadeRing, Sheet
 from nomad_mj.robots.steadying import steady_wheels
 
-_UNRULED = ("steer", "turret")  # motors whose angle is read, not their way
+_UNRULED = re.compile(r"(steer|turret)(_\d+)?")  # motors whose angle is read, not their way
 
 
 def adopt(spec: mujoco.MjSpec, sheet: Sheet, robot: str) -> None:
@@ -50,11 +51,12 @@ def adopt(spec: mujoco.MjSpec, sheet: Sheet, robot: str) -> None:
             spec.add_text(name=name, data=text)
     if sheet.base and sheet.base not in [body.name for body in spec.bodies]:
         raise _missing(robot, "body", sheet.base, [body.name for body in spec.bodies])
+    _name_bumpers(spec)
+    listed = {ring: made for ring, made in sheet.rings.items() if not isinstance(made, MadeRing)}
+    _rename_rings(spec, listed, robot)
     for ring, made in sheet.rings.items():
         if isinstance(made, MadeRing):
             _make_ring(spec, ring, made, robot)
-        else:
-            _rename_ring(spec, ring, made, robot)
 
 
 def _missing(robot: str, what: str, name: str, there: list[str]) -> ModelError:
@@ -125,35 +127,69 @@ def _make_servos(spec: mujoco.MjSpec, sheet: Sheet) -> None:
         return
     for actuator in spec.actuators:
         if actuator.name in wheels or actuator.name.startswith("drive_"):
-            actuator.set_to_velocity(kv=gain)
-            actuator.ctrlrange, actuator.ctrllimited = [-speed, speed], True
+            gear = abs(float(actuator.gear[0])) or 1.0  # gain and speed are those of the wheel
+            actuator.set_to_velocity(kv=gain / gear**2)
+            actuator.ctrlrange, actuator.ctrllimited = [-speed * gear, speed * gear], True
 
 
 def _encode(spec: mujoco.MjSpec, actuator: str) -> None:
     """Add an encoder to a motor that has none: its speed, from which its way is summed."""
     kind = mujoco.mjtSensor.mjSENS_ACTUATORVEL
     there = [s for s in spec.sensors if s.type == kind and s.objname == actuator]
-    if not there and actuator.partition("_")[0] not in _UNRULED:
+    if not there and not _UNRULED.fullmatch(actuator):
         spec.add_sensor(
-            name=f"{actuator}_encoder",
+            name=_free_name(f"{actuator}_encoder", {s.name for s in spec.sensors}),
             type=kind,
             objtype=mujoco.mjtObj.mjOBJ_ACTUATOR,
             objname=actuator,
         )
 
 
-def _rename_ring(spec: mujoco.MjSpec, ring: str, names: tuple[str, ...], robot: str) -> None:
-    """Give rangefinders the names of a ring's single rays."""
+def _free_name(wanted: str, taken: set[str]) -> str:
+    """Return a name that nothing has yet."""
+    while wanted in taken:
+        wanted += "_"
+    return wanted
+
+
+def _name_bumpers(spec: mujoco.MjSpec) -> None:
+    """Give touch sensors that have no name one."""
+    taken = {sensor.name for sensor in spec.sensors}
+    for number, sensor in enumerate(spec.sensors):
+        if sensor.type == mujoco.mjtSensor.mjSENS_TOUCH and not sensor.name:
+            sensor.name = _free_name(f"bumper_{number}", taken)
+
+
+def _rename_rings(spec: mujoco.MjSpec, rings: dict[str, tuple[str, ...]], robot: str) -> None:
+    """Give rangefinders the names of their rings' single rays; others of these rings go."""
     kind = mujoco.mjtSensor.mjSENS_RANGEFINDER
     finders = {s.name: s for s in spec.sensors if s.type == kind}
-    for cone, name in enumerate(names):
-        if name not in finders:
-            raise _missing(robot, "rangefinder", name, list(finders))
-        finders[name].name = f"{ring}_{cone:03d}"
+    named: set[str] = set()
+    for ring, names in rings.items():
+        for name in names:
+            if name not in finders:
+                raise _missing(robot, "rangefinder", name, list(finders))
+            if name in named:
+                raise ModelError(f"robot {robot!r}: ring {ring!r} names {name!r} a second time")
+            named.add(name)
+    for name, sensor in finders.items():
+        if name not in named and any(re.fullmatch(rf"{re.escape(r)}(_\d+)+", name) for r in rings):
+            spec.delete(sensor)
+        elif name in named:
+            sensor.name = f"ring of its data sheet {name}"  # so that no two meet on the way
+    for ring, names in rings.items():
+        for cone, name in enumerate(names):
+            finders[name].name = f"{ring}_{cone:03d}"
 
 
 def _make_ring(spec: mujoco.MjSpec, ring: str, made: MadeRing, robot: str) -> None:
     """Add the sites and rangefinders of a ring."""
+    kind, name = mujoco.mjtSensor.mjSENS_RANGEFINDER, re.compile(rf"{re.escape(ring)}(_\d+)+")
+    if there := [s.name for s in spec.sensors if s.type == kind and name.fullmatch(s.name)]:
+        raise ModelError(
+            f"robot {robot!r}: ring {ring!r} of its data sheet is to be made, but the file has "
+            f"{there[0]!r}; call it otherwise"
+        )
     body = spec.body(made.body) if made.body else _base(spec)
     if body is None:
         raise _missing(robot, "body", made.body, [b.name for b in spec.bodies])
@@ -177,7 +213,8 @@ def _make_ring(spec: mujoco.MjSpec, ring: str, made: MadeRing, robot: str) -> No
             )
             sensor.cutoff = made.range[1]
             sensor.intprm = [1, 0, 0]
-    spec.add_numeric(name=f"{ring}_min_range", data=[made.range[0]], size=1)
+    if f"{ring}_min_range" not in [numeric.name for numeric in spec.numerics]:
+        spec.add_numeric(name=f"{ring}_min_range", data=[made.range[0]], size=1)
 
 
 def _base(spec: mujoco.MjSpec) -> "mujoco.MjsBody | None":

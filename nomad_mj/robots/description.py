@@ -11,7 +11,7 @@ from nomad_mj.robots.extent import highest, perimeter
 from nomad_mj.robots.footing import Footing, find_footing
 from nomad_mj.robots.naming import PREFIX, NamedModel
 from nomad_mj.robots.rings import RayIndex, index_rays
-from nomad_mj.types import IntArray, MotionLimits, RangeRing, SensorLayout
+from nomad_mj.types import IntArray, MotionLimits, Pose, RangeRing, SensorLayout
 
 _BEHIND = (np.radians(150), np.radians(180), np.radians(210))  # where one looks who backs off
 _GAP = np.radians(15)  # between cones that together still see behind
@@ -76,10 +76,11 @@ def robot_geoms(model: mujoco.MjModel) -> list[int]:
     return [int(i) for i in np.flatnonzero(own[model.geom_bodyid])]
 
 
-def _sizes(named: NamedModel, base: int) -> tuple[float, float]:
-    """Return radius and height of the robot [m]."""
-    model = named.model
+def _sizes(named: NamedModel, footing: Footing) -> tuple[float, float]:
+    """Return radius and height of the robot as it stands on the floor [m]."""
+    model, base = named.model, footing.base
     data = mujoco.MjData(model)
+    footing.place(data.qpos, Pose(0.0, 0.0, 0.0))
     mujoco.mj_kinematics(model, data)
     geoms = robot_geoms(model)
     solid = [g for g in geoms if model.geom_contype[g] or model.geom_conaffinity[g]]
@@ -113,7 +114,7 @@ def describe_robot(model: mujoco.MjModel, name: str) -> RobotDescription:
     named = NamedModel(model, name)
     driven = find_drive(named)
     footing = find_footing(named, driven.steer)
-    radius, height = _sizes(named, footing.base)
+    radius, height = _sizes(named, footing)
     mount = footing.base if driven.turret < 0 else int(model.jnt_bodyid[driven.turret])
     rays, rings = index_rays(named, radius, mount)
     drive = driven.drive

@@ -8,7 +8,14 @@ import numpy as np
 from nomad_mj.motion import CarDrive, SynchroDrive, WheeledDrive
 from nomad_mj.robots.footing import find_base
 from nomad_mj.robots.naming import NamedModel
-from nomad_mj.robots.wheels import Wheel, find_wheels, joint_of, top_speed, wheeled_drive
+from nomad_mj.robots.wheels import (
+    Wheel,
+    find_wheels,
+    is_velocity_servo,
+    joint_of,
+    top_speed,
+    wheeled_drive,
+)
 from nomad_mj.types import FloatArray, IntArray, MotionLimits
 
 _SYNCHRO = ("translate", "steer", "turret")
@@ -86,6 +93,11 @@ def _encoders(
     return Encoders(np.array(speeds), np.array(scales), angles)
 
 
+def _require_servo(named: NamedModel, name: str, actuator: int) -> None:
+    if not is_velocity_servo(named.model, actuator):
+        raise named.error(f": actuator {name!r} takes no speed; write it as <velocity kv=...>")
+
+
 def _hinge(named: NamedModel, name: str, actuator: int) -> int:
     """Return the hinge that a motor turns."""
     joint = joint_of(named.model, actuator)
@@ -98,6 +110,7 @@ def _synchro(named: NamedModel, actuators: dict[str, int]) -> Driven:
     joints = named.names(mujoco.mjtObj.mjOBJ_JOINT, named.model.njnt)
     names = _SYNCHRO if "turret" in joints or "turret" in actuators else _SYNCHRO[:2]
     ids = [named.require("actuator", name, actuators) for name in names]
+    _require_servo(named, names[0], ids[0])
     speeds = [top_speed(named, *motor) for motor in zip(names, ids, strict=True)]
     hinges = [_hinge(named, *motor) for motor in zip(names[1:], ids[1:], strict=True)]
     limits = MotionLimits(
@@ -129,6 +142,8 @@ def _car(named: NamedModel, actuators: dict[str, int]) -> Driven:
         if not group:
             named.require("actuator", role, actuators)
     driven, steered = ([actuators[name] for name in group] for group in groups)
+    for motor in zip(groups[0], driven, strict=True):
+        _require_servo(named, *motor)
     wheels = [Wheel(named, *motor) for motor in zip(groups[0], driven, strict=True)]
     gains = [wheel.gain for wheel in wheels]
     hinges = [_hinge(named, *motor) for motor in zip(groups[1], steered, strict=True)]

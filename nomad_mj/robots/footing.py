@@ -105,7 +105,8 @@ def find_footing(named: NamedModel, steer: int) -> Footing:
     free = [j for j in joints if model.jnt_type[j] == _JOINT.mjJNT_FREE]
     if free:
         address = int(model.jnt_qposadr[free[0]])
-        return Footing(base, address, address + 1, -1, _rest(model, base, address))
+        footing = Footing(base, address, address + 1, -1, _rest(model, base, address))
+        return _checked(named, footing, base)
     found = [_along(model, joints, _JOINT.mjJNT_SLIDE, axis) for axis in ([1, 0, 0], [0, 1, 0])] + [
         steer if steer >= 0 else _along(model, joints, _JOINT.mjJNT_HINGE, [0, 0, 1])
     ]
@@ -116,7 +117,32 @@ def find_footing(named: NamedModel, steer: int) -> Footing:
             "along x and y" + ("" if steer >= 0 else " and a hinge about z")
         )
     x, y, heading = (int(model.jnt_qposadr[j]) for j in found)
-    return Footing(base, x, y, heading, np.zeros(5))
+    turned = int(model.jnt_bodyid[found[2]])
+    return _checked(named, Footing(base, x, y, heading, np.zeros(5)), turned)
+
+
+def _checked(named: NamedModel, footing: Footing, turned: int) -> Footing:
+    """Return a footing if joints and base agree on where the robot is and, `turned`, looks.
+
+    Raises
+    ------
+    ModelError
+        They do not: the base is turned or moved within the file, or its joints are.
+    """
+    model, wanted = named.model, Pose(1.0, 2.0, 0.7)
+    data = mujoco.MjData(model)
+    footing.place(data.qpos, wanted)
+    mujoco.mj_kinematics(model, data)
+    axes, place = data.xmat[turned].reshape(3, 3), data.xpos[footing.base]
+    there = [*place[:2].tolist(), math.atan2(axes[1, 0], axes[0, 0])]
+    if not np.allclose([there, list(footing.pose(data.qpos))], list(wanted), atol=1e-4):
+        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, footing.base).rpartition("/")[2]
+        raise named.error(
+            f": its base {name!r} is not where its joints say: it must lie at the origin and look "
+            "along x where they are 0 (no pos, euler or frame; slides before the hinge), and a "
+            "free joint must be its own"
+        )
+    return footing
 
 
 def _chain(model: mujoco.MjModel, body: int) -> list[int]:

@@ -161,6 +161,7 @@ def index_rays(
         members = [[sensors[p] for p in rays] for rays in cones.values()]
         sites = [[int(model.sensor_objid[s]) for s in rays] for rays in members]
         _check_mount(named, ring_name, [site for own in sites for site in own], mount)
+        _check_cutoffs(named, [sensor for own in members for sensor in own])
         rays = [_rays(model, mount, own) for own in sites]
         ring = _ring(ring_name, rays, _limits(named, ring_name, members[0][0]))
         rings.append(ring)
@@ -177,6 +178,18 @@ def index_rays(
     specular = np.flatnonzero(np.isin(address, model.sensor_adr[reporting_surfaces(model)]))
     index = RayIndex(np.array(address), np.array(first), offset, minimum, maximum, specular)
     return index, tuple(rings)
+
+
+def _check_cutoffs(named: NamedModel, sensors: list[int]) -> None:
+    """Raise ModelError if rangefinders of a ring do not reach equally far."""
+    cutoffs = named.model.sensor_cutoff[sensors]
+    odd = np.flatnonzero(cutoffs != cutoffs[0])
+    if len(odd):
+        name = named.model.sensor(sensors[odd[0]]).name.removeprefix(PREFIX)
+        raise named.error(
+            f": rangefinder {name!r} has a cutoff of {cutoffs[odd[0]]:g} m, others of its ring "
+            f"{cutoffs[0]:g} m; give it the same, or a ring of its own"
+        )
 
 
 def _limits(named: NamedModel, ring: str, sensor: int) -> tuple[float, float]:

@@ -15,6 +15,7 @@ KINDS = ("synchro", "differential", "omni", "car")
 ROLES = {"synchro": ("translate", "steer", "turret"), "car": ("drive", "steer")}
 _KEYS = ("drive", "base", "motors", "numbers", "rings")
 _MADE = ("body", "count", "bearings", "distance", "height", "half_angle", "rays", "range")
+_TAKEN = ("bumpers", "encoders", "odometry", "goal", "duration", "driven", "clearance", "outcome")
 _MOST_CONES, _MOST_RAYS = 720, 64
 
 
@@ -97,6 +98,9 @@ def read_sheet(robot: Path) -> Sheet:
         raise ModelError(f"{what} drive {drive!r}: must be one of {', '.join(KINDS)}")
     values = _mapping(held.get("numbers", {}), f"{what} numbers")
     rings = _mapping(held.get("rings", {}), f"{what} rings")
+    for name in rings:
+        if name in _TAKEN or not name:
+            raise ModelError(f"{what} ring {name!r}: must have a name of its own, such as sonar")
     return Sheet(
         drive,
         _text(held.get("base", ""), f"{what} base"),

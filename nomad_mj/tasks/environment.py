@@ -11,8 +11,9 @@ from dm_env import specs
 
 from nomad_mj.errors import ConfigError
 from nomad_mj.scene import CONTROL_TIMESTEP
-from nomad_mj.tasks.motor import MotorTask, seed_sequence
+from nomad_mj.tasks.motor import MotorTask
 from nomad_mj.tasks.physics import NavigationPhysics
+from nomad_mj.tasks.seeds import seed_sequence
 from nomad_mj.tasks.starts import Start
 
 

@@ -9,25 +9,17 @@ from dm_control.rl import control
 from dm_env import specs
 
 from nomad_mj.errors import ConfigError
-from nomad_mj.movers import Movers
+from nomad_mj.movers import Movers, find_room_for
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.tasks.config import MotorConfig
 from nomad_mj.tasks.physics import NavigationPhysics, Placeable, Posed
 from nomad_mj.tasks.ranging import Ranging
+from nomad_mj.tasks.seeds import seed_sequence
 from nomad_mj.tasks.self_sensing import SelfSensing
 from nomad_mj.tasks.starts import Start, resolve_start
 from nomad_mj.types import FloatArray, Travel
 
 REWARD_MARGIN = 5.0  # [m] from the goal at which the reward has fallen to 0.1
-
-
-def seed_sequence(seed: int | np.random.SeedSequence | None) -> np.random.SeedSequence:
-    """Return a seed as a SeedSequence, None as a new one; raise ConfigError if it is none."""
-    try:
-        is_sequence = isinstance(seed, np.random.SeedSequence)
-        return seed if is_sequence else np.random.SeedSequence(seed)
-    except (TypeError, ValueError):
-        raise ConfigError(f"seed {seed!r}: must be a whole number from 0 on") from None
 
 
 class MotorTask(control.Task):
@@ -100,6 +92,8 @@ class MotorTask(control.Task):
         moving = scene.moving
         self.movers = Movers(moving, scene.plan, self._goal, radius) if moving else None
         self._begin(None)
+        if self.movers is not None:
+            find_room_for(self.movers, scene.arena.starts)
 
     def seed(self, random: int | np.random.SeedSequence | None) -> None:
         """Start the sequence of episodes anew from a seed."""
@@ -118,14 +112,14 @@ class MotorTask(control.Task):
         streams = np.random.SeedSequence(self._seed.entropy, spawn_key=key).spawn(10)
         choice, ranges, odometry, free, *moving = map(np.random.default_rng, streams[:6])
         self.random = free
-        start = resolve_start(self.scene, self._start, choice)
-        if self.movers is not None:
+        wanted, self._start = self._start, None  # of this episode, even if it fails
+        start = resolve_start(self.scene, wanted, choice)
+        if self.movers is not None and physics is not None:
             self.movers.start(start[:2], *moving)
             self._show(self.movers, physics)
         if physics is not None:
             physics.place(start)
             self._episode += 1
-            self._start = None
         self.ranging.start(ranges, *streams[6:8])
         robot = self.scene.robot
         self.own = SelfSensing(robot, self.config, start, odometry, *streams[8:])

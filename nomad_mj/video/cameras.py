@@ -25,10 +25,7 @@ def _free_camera() -> mujoco.MjvCamera:
 
 def _room_camera(scene: Scene, elevation: float) -> mujoco.MjvCamera:
     """Return a camera that sees all of the floor plan from `elevation` [deg] up."""
-    x0, y0, x1, y1 = scene.plan.bounds
-    if not np.isfinite(x0):  # nothing stands in the room
-        places = np.concatenate([scene.arena.starts[:, :2], scene.arena.goal[None]])
-        (x0, y0), (x1, y1) = places.min(axis=0) - 1.0, places.max(axis=0) + 1.0
+    x0, y0, x1, y1 = scene.shown_bounds
     middle = np.array([(x0 + x1) / 2, (y0 + y1) / 2, 0.0])
     corners = np.array([[x, y, z] for x in (x0, x1) for y in (y0, y1) for z in (0.0, _WALL)])
     corners -= middle

@@ -118,3 +118,25 @@ def test_a_folder_that_cannot_be_made(tmp_path: Path, capsys: pytest.CaptureFixt
     (tmp_path / "file").touch()
     assert main(["check", "corridor", "--out", str(tmp_path / "file")]) == 2
     assert "cannot write" in capsys.readouterr().err
+
+
+def test_a_room_without_walls_and_with_a_dot_in_its_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    room = tmp_path / "my.v1.xml"
+    sites = '<site name="goal" pos="5 3 0"/><site name="start_0" pos="1 1 0"/>'
+    room.write_text(f"<mujoco><worldbody>{sites}</worldbody></mujoco>")
+    assert main(["check", str(room), "--out", str(tmp_path)]) == 0
+    picture = tmp_path / "check_my.v1.png"
+    assert picture.exists() and str(picture) in capsys.readouterr().out.replace("\n", "")
+
+
+def test_a_room_of_more_things_than_fit_is_refused_at_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    room = tmp_path / "many.xml"
+    box = '<geom type="box" size=".1 .1 .1"/>'
+    many = f'<replicate count="60000" offset="1 0 0">{box}</replicate>'
+    room.write_text(f"<mujoco><worldbody>{many}</worldbody></mujoco>")
+    assert main(["check", str(room), "--out", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1

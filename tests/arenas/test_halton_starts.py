@@ -1,3 +1,6 @@
+from collections.abc import Callable
+from pathlib import Path
+
 import numpy as np
 import pytest
 import shapely
@@ -6,6 +9,8 @@ from nomad_mj.arenas import FloorPlan
 from nomad_mj.arenas.halton import halton_starts, main
 from nomad_mj.assets import list_rooms
 from nomad_mj.errors import StartError
+
+OwnRoom = Callable[..., Path]
 
 RING = shapely.box(-1, -1, 9, 5) - shapely.box(0, 0, 8, 4)
 PLAN = FloorPlan([("ring", RING), ("box", shapely.box(3, 1, 5, 3))])
@@ -30,6 +35,15 @@ def test_prints_the_sites_of_a_room(capsys: pytest.CaptureFixture[str]) -> None:
     printed = capsys.readouterr().out
     assert printed.count("\n") == 50
     assert printed in path.read_text(encoding="utf-8")
+
+
+def test_the_goal_may_be_on_a_body(own_room: OwnRoom, capsys: pytest.CaptureFixture[str]) -> None:
+    goal = ('<site name="goal" pos="3 3 0"/>', '<body pos="3 3 0"><site name="goal"/></body>')
+    printed: list[str] = []
+    for path in (own_room(), own_room("", goal)):
+        main([str(path), "5"])
+        printed.append(capsys.readouterr().out)
+    assert printed[0] == printed[1]
 
 
 def test_a_room_that_cannot_be_read(capsys: pytest.CaptureFixture[str]) -> None:

@@ -77,6 +77,38 @@ def test_the_same_seed_gives_the_same_bits_and_a_reset_leaves_no_trace() -> None
     other.close()
 
 
+def test_obstacles_start_clear_of_where_the_goal_is_not_of_where_it_was() -> None:
+    options = {
+        "moving_goal": MovingGoal(speed=1.0, spread=0.0, period=100.0),
+        "moving_obstacles": MovingObstacles(count=3),
+    }
+    fresh, driven = motor("empty_room", **options), motor("empty_room", **options)
+    for seed in range(40):
+        fresh.reset(seed=seed)
+        driven.reset(seed=seed)
+        np.testing.assert_array_equal(movers_of(fresh).obstacles, movers_of(driven).obstacles)
+        list(about(driven, 20))
+        assert not np.array_equal(movers_of(driven).goal, movers_of(fresh).goal)
+    fresh.close()
+    driven.close()
+
+
+def test_a_start_that_cannot_be_is_asked_for_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    env = motor("empty_room", moving_obstacles=MovingObstacles(count=2))
+    start = movers_of(env).start
+
+    def fails(*_: Any) -> None:
+        raise StartError("no place")
+
+    monkeypatch.setattr(movers_of(env), "start", fails)
+    with pytest.raises(StartError):
+        env.reset(seed=0, start=(5.0, 5.0, 1.0))
+    monkeypatch.setattr(movers_of(env), "start", start)
+    env.reset(seed=0)
+    assert env.physics.pose() != (5.0, 5.0, 1.0)
+    env.close()
+
+
 def test_nothing_else_changes_where_movers_are_far(env: MotorEnvironment) -> None:
     """The other streams of an episode are what they are without movers."""
     plain = motor()

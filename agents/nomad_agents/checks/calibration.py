@@ -36,7 +36,8 @@ def calibrate(scene: Scene, drifts: Sequence[Drift]) -> dict[str, float]:
         return numbers
     stretch = straight.stretch if abs(straight.stretch - 1) > _SLIP else 1.0
     if stretch != 1.0:
-        numbers["wheel_radius"] = stretch / abs(drive.gains[0])
+        gear = float(scene.model.actuator_gear[scene.robot.motors[0], 0])
+        numbers["wheel_radius"] = stretch * abs(gear / drive.gains[0])
     # With other wheels odometry would have turned by as much more.
     off = (turn.turned + turn.off_heading) / (turn.turned * stretch)
     if turn.finished and abs(off - 1) > _SLIP:

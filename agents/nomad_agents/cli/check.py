@@ -24,6 +24,7 @@ from nomad_agents.cli.common import console, print_json
 from nomad_agents.experiments.figures import draw_starts
 from nomad_mj.assets import find_robot, find_room, list_robots, list_rooms
 from nomad_mj.errors import ModelError, OutputError
+from nomad_mj.guard import check_size
 from nomad_mj.robots import find_sheet
 from nomad_mj.scene import build_scene
 
@@ -61,7 +62,7 @@ class Check:
             screen.print(table)
         if drifts:
             screen.print(drift_table(drifts))
-        _print_faults(screen, faults, path.with_suffix(".png"))
+        _print_faults(screen, faults, out / f"{path.name}.png")
         if self.json:
             print_json(
                 robot_values(scene)
@@ -78,7 +79,7 @@ class Check:
         for name, value in values.items():
             table.add_row(name.replace("_", " "), str(value))
         screen.print(table)
-        _print_faults(screen, [], path.with_suffix(".png"))
+        _print_faults(screen, [], out / f"{path.name}.png")
         if self.json:
             print_json(values | {"faults": []})
         return 0
@@ -107,6 +108,7 @@ def is_room(name: str) -> bool:
         known = sorted([*list_robots(), *list_rooms()])
         raise ModelError(f"unknown robot or room {name!r}; there are: {', '.join(known)}")
     path = find_room(name)
+    check_size("room", path)
     try:
         spec = mujoco.MjSpec.from_file(str(path))
     except (ValueError, RuntimeError, UnicodeDecodeError):

@@ -103,7 +103,7 @@ def _draw_obstacle(axes: Axes, place: FloatArray, step: FloatArray, radius: floa
 
 def _draw_scale(axes: Axes, scene: Scene) -> None:
     """Draw a bar of two metres in a lower corner, in the place of numbers along the sides."""
-    x0, y0, _, _ = scene.plan.bounds.tolist()
+    x0, y0, _, _ = scene.shown_bounds
     x, y = x0 + 0.45, y0 + 0.45
     axes.plot([x, x + 2], [y, y], color=INK, lw=2, solid_capstyle="butt", zorder=8)
     axes.text(x + 1, y + 0.12, "2 m", ha="center", va="bottom", fontsize=10, zorder=8)

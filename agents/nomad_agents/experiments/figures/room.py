@@ -47,7 +47,7 @@ class Panel(Generic[Content_co]):
 
 def room_height(scene: Scene, width: float) -> float:
     """Return how high [in] a room is that is drawn so wide."""
-    x0, y0, x1, y1 = scene.plan.bounds.tolist()
+    x0, y0, x1, y1 = scene.shown_bounds
     return width * (y1 - y0) / (x1 - x0)
 
 
@@ -73,7 +73,7 @@ def rooms(
     width = min(_WIDEST, _PAGE / columns)
     drawn = width - _BESIDE / columns
     highest = max((room_height(panel.scene, drawn) for panel in panels), default=drawn)
-    sizes = {tuple(panel.scene.plan.bounds.tolist()) for panel in panels}
+    sizes = {panel.scene.shown_bounds for panel in panels}
     with sheet(path, width * columns, rows * (highest + _TITLE) + _BELOW) as figure:
         grid = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
         for axes, panel in zip(grid, panels, strict=False):
@@ -91,7 +91,7 @@ def rooms(
 
 def draw_plan(axes: Axes, scene: Scene) -> None:
     """Draw the floor plan in metres, to equal scales and without a frame."""
-    x0, y0, x1, y1 = scene.plan.bounds.tolist()
+    x0, y0, x1, y1 = scene.shown_bounds
     patches = [Polygon(shapely.get_coordinates(shape)) for shape in scene.plan.footprints]
     axes.add_collection(PatchCollection(patches, facecolor=OBSTACLE, edgecolor=OBSTACLE, lw=0.5))
     axes.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal")
