@@ -48,6 +48,16 @@ class Checkpoint(NamedTuple):
     conditions: dict[str, Any]
 
 
+def _umask() -> int:
+    """Return the mask of new files' permissions, which can only be read by setting it."""
+    mask = os.umask(0o022)
+    os.umask(mask)
+    return mask
+
+
+_UMASK = _umask()  # once: other threads would make files under the wrong one
+
+
 def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
     """Write a file whole or not at all.
 
@@ -64,7 +74,7 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
             write(file)
             file.flush()
             os.fsync(file.fileno())  # or a power cut could leave the new name with no content
-        Path(temporary).chmod(0o644)
+        Path(temporary).chmod(0o666 & ~_UMASK)
         Path(temporary).replace(path)
         temporary = ""
     except OSError as error:

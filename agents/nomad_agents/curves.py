@@ -1,7 +1,7 @@
 """Curves of a training for TensorBoard, by decisions; no TensorFlow, no PyTorch."""
 
 from collections.abc import Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -45,6 +45,7 @@ class Curves:
         with curves_folder(Path(folder), resume=resume) as path:
             self._last = {tag: points[-1][0] for tag, points in read_curves(path).items()}
             self._writer: Any = summary.Writer(str(path))
+            self._folder = path
         self._reward = 0.0
         self._before = Training()
 
@@ -57,7 +58,8 @@ class Curves:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._writer.close()
+        with suppress(OSError):  # what failed before fails again, and has been told
+            self._writer.close()
 
     def begin(self, training: Training) -> None:
         """Say how far the training is before its next episode."""
@@ -93,24 +95,39 @@ class Curves:
         self.begin(training)
 
     def flush(self) -> None:
-        """Put on disk what was written, as is done before a checkpoint: none is ahead of them."""
-        self._writer.flush()
+        """Put on disk what was written, as is done before a checkpoint: none is ahead of them.
+
+        Raises
+        ------
+        OutputError
+            They cannot be written.
+        """
+        with _told(self._folder):
+            self._writer.flush()
 
     def _write(self, tag: str, value: float, step: int) -> None:
         if step > self._last.get(tag, -1):
-            self._writer.add_scalar(tag, value, step)
+            with _told(self._folder):
+                self._writer.add_scalar(tag, value, step)
 
 
 @contextmanager
 def curves_folder(folder: Path, *, resume: bool) -> Generator[Path, None, None]:
     """Make the folder of a run's curves, for a writer to be opened in; see `Curves`."""
-    try:
+    with _told(folder):
         folder = folder.expanduser()
         folder.mkdir(parents=True, exist_ok=True)
         if not resume:
             for file in folder.glob(_FILES):
                 file.unlink()
         yield folder
+
+
+@contextmanager
+def _told(folder: Path) -> Generator[None, None, None]:
+    """Let errors of the disk be told in a line."""
+    try:
+        yield
     except (OSError, RuntimeError) as error:  # RuntimeError: a home that there is not
         reason = getattr(error, "strerror", None) or error
         raise OutputError(f"cannot write curves to {str(folder)!r}: {reason}") from None

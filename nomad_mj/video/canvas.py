@@ -1,5 +1,6 @@
 """An OpenGL picture of several panes, read back as an array."""
 
+import atexit
 import threading
 import weakref
 from collections.abc import Callable
@@ -102,8 +103,8 @@ class Canvas:
             reason = " ".join(str(error).split())
             raise RenderError(f"OpenGL cannot draw {width} x {height} pixels: {reason}") from None
         self._gl, self._context = gl, context
-        # Runs at exit too, while OpenGL is still there, if nobody closed the canvas.
         self.close = weakref.finalize(self, _free, gl, context)
+        _close_at_exit(self.close)
 
     def draw(
         self,
@@ -145,3 +146,22 @@ class Canvas:
         mujoco.mjr_readPixels(self._pixels, None, whole, self._context)
         _take_turns()
         return np.ascontiguousarray(self._pixels[::-1])
+
+
+_open: list["weakref.finalize[..., Any]"] = []
+
+
+def _close_at_exit(close: "weakref.finalize[..., Any]") -> None:
+    """Free a canvas that nobody closes while OpenGL is still there.
+
+    What is registered last runs first at exit. A finalizer's own hook may be older than OpenGL's.
+    """
+    close.atexit = False
+    if not _open:
+        atexit.register(_close_all)
+    _open[:] = [*(each for each in _open if each.alive), close]
+
+
+def _close_all() -> None:
+    for close in _open:
+        close()

@@ -15,6 +15,12 @@ from nomad_mj.video.studio import Studio
 env = nomad_mj.load("path_finding", room="empty_room")
 env.reset(seed=1, start=0)
 """
+EARLY = """
+import weakref
+class Kept: pass
+kept = Kept()
+weakref.finalize(kept, int)  # as importing PyTorch does
+"""
 SCRIPTS = {
     "closed": """
 pixels = env.physics.render(32, 32)
@@ -39,6 +45,12 @@ other.close()
 assert (env.physics.render(32, 32) == pixels).all(), "dm_control draws elsewhere"
 env.close()
 """,
+    "finalizers before OpenGL": """
+studio = Studio(env.scene, "side", (320, 120))
+studio.show(env.physics.data)
+studio.begin()
+studio.frame(0.0, 0.0)
+""",
     "never closed": """
 studio = Studio(env.scene, "side", (320, 120))
 studio.show(env.physics.data)
@@ -59,7 +71,8 @@ def test_nothing_is_printed_at_exit(backend: str, script: str, tmp_path: Path) -
     env |= {"MUJOCO_GL": backend, "PYTHONPATH": os.pathsep.join(sys.path)}
     path = tmp_path / "v.mp4"
     check = f"{SETUP}\nprint(nomad_mj._gl.gl_report().works)"
-    code = f"PATH = {str(path)!r}\n{SETUP}\n{SCRIPTS[script]}\nprint('done')"
+    early = EARLY if script == "finalizers before OpenGL" else ""
+    code = f"{early}\nPATH = {str(path)!r}\n{SETUP}\n{SCRIPTS[script]}\nprint('done')"
 
     def run(text: str) -> "subprocess.CompletedProcess[str]":
         command = [sys.executable, "-W", "error", "-c", text]

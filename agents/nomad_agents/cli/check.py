@@ -8,6 +8,7 @@ import mujoco
 import tyro
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from nomad_agents.checks import (
     draw_robot_card,
@@ -121,7 +122,7 @@ def is_room(name: str) -> bool:
 
 def _print_faults(screen: Console, faults: list[str], picture: Path) -> None:
     for fault in faults:
-        screen.print(f"[yellow]![/yellow] {fault}", soft_wrap=True)
+        screen.print(Text.assemble(("!", "yellow"), f" {fault}"), soft_wrap=True)
     if not faults:
         screen.print("Nothing is missing.")
-    screen.print(f"Picture: {picture}", soft_wrap=True, markup=False)
+    screen.print(f"Picture: {picture}", soft_wrap=True)

@@ -18,7 +18,7 @@ SUFFIXES = {".npz", ".mp4", ".csv", ".html"}
 
 def console(*, json_wanted: bool) -> Console:
     """Return where people read: standard error if standard output is for a program."""
-    return Console(stderr=json_wanted, highlight=False)
+    return Console(stderr=json_wanted, highlight=False, markup=False)  # names may hold brackets
 
 
 def print_json(values: Mapping[str, Any]) -> None:

@@ -1,5 +1,6 @@
 """``nomad-mj demo``: learn the paper's room, compare, and show it."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from nomad_agents.recording import record
 from nomad_agents.registry import find_config, make_agent
 from nomad_agents.training import Training, TrainingConfig, training_report
 from nomad_mj.envs import DEFAULT_ROOM, PathFinding
-from nomad_mj.errors import RenderError
+from nomad_mj.errors import ConfigError, RenderError
 
 # Section 4 of the paper.
 PAPER = {
@@ -68,6 +69,11 @@ class Demo(TaskOptions):
 
     def run(self) -> int:
         """Train, compare, draw and record; return the exit code."""
+        for name, given, least in (("starts", self.starts, 1), ("videos", self.videos, 0)):
+            if given < least:
+                raise ConfigError(f"{name} {given}: must be {least} or more")
+        if not 0 < self.speed < math.inf:
+            raise ConfigError(f"speed {self.speed}: must be above 0")
         screen = console(json_wanted=self.json)
         with self.path_finding() as env, interruptible():
             path = output_file(self.out, env.scene.arena.name, ".npz")
@@ -77,8 +83,9 @@ class Demo(TaskOptions):
             run_training(env, agent, settings, training, path, screen, self.conditions())
             report = training_report(env, agent, training)
             summaries = self._compare(env, agent, screen)
-            title = f"{path.stem}, seed {self.seed}"
-            screen.print(_table(title, report, summaries, as_paper=path.stem == DEFAULT_ROOM))
+            room = env.scene.arena.name
+            title = f"{room}, seed {self.seed}"
+            screen.print(_table(title, report, summaries, as_paper=room == DEFAULT_ROOM))
             trials = self._draw(env, agent, path.parent, screen)
             shown = self._record(env, agent, trials, path.with_suffix(".mp4"), screen)
         files = [path.name, "fig6.png", "fig7.png", *([f"{path.stem}.mp4"] if shown else [])]
@@ -117,6 +124,8 @@ class Demo(TaskOptions):
     ) -> bool:
         """Write the video; return False, having said why, where there is no OpenGL."""
         starts = [trial.start.tolist() for trial in trials[: self.videos]]
+        if not starts:
+            return False
         try:
             with screen.status(f"recording {path.name}"):
                 record(env, agent, path, starts=starts, seed=self.seed, speed=self.speed)

@@ -54,6 +54,7 @@ class Evaluate(TaskOptions):
 
     def run(self) -> int:
         """Evaluate; return the exit code."""
+        require_decisions(self.max_decisions)
         screen = console(json_wanted=self.json)
         with self.path_finding() as env, interruptible():
             agent = find_agent(self.agent, env.scene.robot.layout, find_config(self.config))
@@ -72,6 +73,12 @@ class Evaluate(TaskOptions):
         if self.json:
             print_json(summary)
         return 0
+
+
+def require_decisions(most: int) -> None:
+    """Raise ConfigError unless an episode may have some decisions."""
+    if most < 1:
+        raise ConfigError(f"max_decisions {most}: must be 1 or more")
 
 
 def choose_starts(env: PathFinding, starts: str, seed: int) -> FloatArray:

@@ -7,7 +7,7 @@ from typing import Any, Literal
 import gymnasium
 
 from nomad_agents.cli.common import console, interruptible, print_json
-from nomad_agents.cli.evaluate import choose_starts
+from nomad_agents.cli.evaluate import choose_starts, require_decisions
 from nomad_agents.cli.progress import trial_progress
 from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.collecting import collect, task_of
@@ -43,6 +43,7 @@ class Export(TaskOptions):
 
     def run(self) -> int:
         """Export; return the exit code."""
+        require_decisions(self.max_decisions)
         need("minari", "minari", "export")
         need("h5py", "minari", "export")
         screen = console(json_wanted=self.json)

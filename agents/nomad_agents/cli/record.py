@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from nomad_agents.cli.common import console, interruptible, output_file, print_json
-from nomad_agents.cli.evaluate import choose_starts
+from nomad_agents.cli.evaluate import choose_starts, require_decisions
 from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.recording import record
 from nomad_agents.registry import find_agent, find_config
@@ -43,6 +43,7 @@ class Record(TaskOptions):
 
     def run(self) -> int:
         """Record; return the exit code."""
+        require_decisions(self.max_decisions)
         screen = console(json_wanted=self.json)
         with self.path_finding() as env, interruptible():
             agent = find_agent(self.agent, env.scene.robot.layout, find_config(self.config))

@@ -61,7 +61,9 @@ class Reproduce:
         build_scene(self.room, self.robot)  # whatever is wrong with them is said now, and once
         study = Study(self.config, self.room, self.robot, self.seeds)
         screen = console(json_wanted=self.json)
-        folder = output_file(f"{self.out}/reproduce/{self.config}/runs", "probe", ".csv").parent
+        folder = output_file(
+            str(Path(self.out, "reproduce", self.config, "runs")), "probe", ".csv"
+        ).parent
         report = output_file(self.out, "report", ".html")
         with interruptible():
             results = self._results(experiments, study, folder, screen)

@@ -69,7 +69,6 @@ class MakeRoom:
             f"{path}: {x1 - x0:g} x {y1 - y0:g} m, {things} walls and obstacles, "
             f"{len(room.starts)} starts",
             soft_wrap=True,
-            markup=False,
         )
         if self.json:
             goal = list(room.goal or ())

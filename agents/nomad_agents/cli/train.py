@@ -143,6 +143,8 @@ class Train(TaskOptions):
 
     def _resume(self, env: PathFinding, path: Path) -> tuple[ReactivePlanner, Training]:
         """Return the agent of the checkpoint to go on from, and how far it is."""
+        if self.agent != ReactivePlanner.name:
+            raise ConfigError(f"--agent {self.agent!r}: --resume goes on with the agent in --out")
         config = find_config(self.config)
         checkpoint = load_checkpoint(path)
         robot = env.scene.robot
@@ -164,9 +166,15 @@ class Train(TaskOptions):
         self.require_same(checkpoint.conditions, str(path))
         state = {k: v for k, v in checkpoint.training.items() if k != "seed"}
         try:
-            return checkpoint.agent, structure(state, Training)
+            training = structure(state, Training)
         except Exception:
             raise CheckpointError(f"checkpoint {str(path)!r} holds no state of training") from None
+        if not 0 <= training.next_start < len(env.scene.arena.starts):
+            raise CheckpointError(
+                f"cannot resume {str(path)!r}: it is of a room with more starts than "
+                f"{len(env.scene.arena.starts)}"
+            )
+        return checkpoint.agent, training
 
 
 def run_training(
@@ -190,9 +198,11 @@ def run_training(
         scene = env.scene
         state = {**asdict(training), "seed": settings.seed}
         names = scene.arena.name, scene.robot.name
-        if curves is not None:
-            curves.flush()
-        save_checkpoint(path, agent, *names, state, conditions)
+        try:
+            if curves is not None:
+                curves.flush()
+        finally:  # what was learnt is kept, whatever becomes of its curves
+            save_checkpoint(path, agent, *names, state, conditions)
 
     with TrainingProgress(screen, len(env.scene.arena.starts)) as progress:
 

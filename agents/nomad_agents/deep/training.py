@@ -112,3 +112,5 @@ def require_budget(decisions: int, every: int, seed: int) -> None:
     for name, given, least in (("decisions", decisions, 1), ("every", every, 0), ("seed", seed, 0)):
         if given < least:
             raise ConfigError(f"{name} {given}: must be {least} or more")
+    if seed >= 2**32:
+        raise ConfigError(f"seed {seed}: must be below 2**32, for PyTorch")

@@ -8,10 +8,10 @@ _FILE = re.compile(rb"""\bfile\s*=\s*["']([^"']+)["']""")  # of <include>, <mesh
 _FOLDER = re.compile(rb"""\b(?:asset|mesh|texture)dir\s*=\s*["']([^"']+)["']""")
 
 
-def digest(path: Path) -> str:
-    """Return a digest of a file's content, and of what it names if it is XML."""
+def digest(path: Path, beside: Path | None = None) -> str:
+    """Return a digest of a file's content, of what it names if it is XML, and of one beside it."""
     told = hashlib.sha256()
-    for part in _parts(path):
+    for part in [*_parts(path), *([beside] if beside else [])]:
         content = part.read_bytes()
         told.update(b"%d:" % len(content) + content)
     return told.hexdigest()
@@ -21,9 +21,9 @@ def _parts(path: Path) -> list[Path]:
     """Return a file and all that it names, each once, in the order in which they are named."""
     found, folders = [path], [path.parent]
     for part in found:
-        if part.suffix != ".xml":
-            continue
         content = part.read_bytes()
+        if not content.lstrip().startswith(b"<"):
+            continue
         # All names are from the folder of the first file, or from one that it names.
         folders += [path.parent / _name(each) for each in _FOLDER.findall(content)]
         for each in _FILE.findall(content):

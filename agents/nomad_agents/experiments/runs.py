@@ -23,6 +23,7 @@ from nomad_agents.experiments.pool import do_in_processes
 from nomad_agents.registry import find_config
 from nomad_mj.assets import find_robot, find_room
 from nomad_mj.errors import OutputError
+from nomad_mj.robots import find_sheet
 
 Row = dict[str, Any]
 PACKAGES = ("nomad-mj", "mujoco", "numpy")
@@ -112,7 +113,8 @@ def _key(run: Run) -> Row:
     key = {**run.identity(), "edition": _EDITION}
     key["packages"] = {name: version(name) for name in run.packages()}
     key["parameters"] = run.parameters()
-    key["files"] = [digest(find_room(run.room)), digest(find_robot(run.robot))]
+    robot = find_robot(run.robot)
+    key["files"] = [digest(find_room(run.room)), digest(robot, find_sheet(robot))]
     return json.loads(json.dumps(key))
 
 

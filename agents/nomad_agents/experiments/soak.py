@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 
 import nomad_mj
+from nomad_mj.errors import ConfigError
 from nomad_mj.scene import CONTROL_TIMESTEP
 
 Progress = Callable[[float], None]
@@ -77,8 +78,15 @@ def soak(
         1: the single motor environment; more: a batch of so many.
     progress : callable, optional
         Told how far it is, from 0 to 1.
+
+    Raises
+    ------
+    ConfigError
+        Fewer than two episodes for each robot.
     """
-    episodes = max(round(resets / robots), 1)
+    episodes = round(resets / robots)
+    if episodes < 2:  # the first fills the caches
+        raise ConfigError(f"resets {resets}: must be {2 * robots} or more, two for each robot")
     steps = max(round(sim_hours * 3600 / CONTROL_TIMESTEP / (episodes * robots)), 1)
     rng = np.random.default_rng(0)
     options = {"random": 0, "ends_at_goal": False}

@@ -21,6 +21,7 @@ from nomad_agents.sweeps.settings import Settings, settle
 from nomad_mj.assets import find_robot, find_room
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import ConfigError, NomadError, WorkerError
+from nomad_mj.robots import find_sheet
 from nomad_mj.types import FloatArray
 
 MACHINE = "machine_"
@@ -150,13 +151,14 @@ def sources(grid: Grid) -> Row:
     values, agents = dict(grid.axes), _agents(grid)
     task = settle({}, 0).task
     files = {f"room {v}": find_room(str(v)) for v in values.get("room", (task.room,))}
-    files |= {f"robot {v}": find_robot(str(v)) for v in values.get("robot", (task.robot,))}
+    robots = {f"robot {v}": find_robot(str(v)) for v in values.get("robot", (task.robot,))}
     own = [v for v in agents if v not in LEARNERS]
     own += [v for v in values.get(STARTS, ()) if not str(v).isdigit()]
     files |= {str(v): Path(str(v)).expanduser() for v in own}
     return {
         "packages": package_versions(agents),
-        "files": {name: digest(path) for name, path in files.items() if path.is_file()},
+        "files": {name: digest(path) for name, path in files.items() if path.is_file()}
+        | {name: digest(path, find_sheet(path)) for name, path in robots.items()},
     }
 
 

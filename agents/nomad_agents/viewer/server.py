@@ -18,6 +18,7 @@ from nomad_agents.viewer.teleoperation import wish_of
 from nomad_mj.errors import ConfigError, NomadError
 
 _PAGE = Path(__file__).with_name("page.html")
+_LOOPBACK = ("127.0.0.1", "::1")
 _LONGEST = 1000  # [bytes] of what a page may send at once
 _PATIENCE = 2.0  # [s] that a request for a picture waits
 _JSON, _HTML = "application/json", "text/html; charset=utf-8"
@@ -55,8 +56,22 @@ class _Handler(BaseHTTPRequestHandler):
     def _ours(self) -> _Server:
         return cast(_Server, self.server)
 
+    def _known_host(self) -> bool:
+        """Return whether a request is for this server by a name of its own; refuse others.
+
+        A page of another site whose name has been pointed to this machine calls it by that name.
+        """
+        host = urlsplit(f"//{self.headers.get('Host', '')}").hostname or ""
+        bound = str(cast("tuple[str, int]", self.server.server_address)[0])
+        if bound not in _LOOPBACK or host in (*_LOOPBACK, "localhost"):
+            return True
+        self._refuse(HTTPStatus.FORBIDDEN, "call it localhost or 127.0.0.1", Connection="close")
+        return False
+
     def do_GET(self) -> None:
         """Send the page, the facts or the next shot."""
+        if not self._known_host():
+            return
         url = urlsplit(self.path)
         if url.path == "/":
             self._send(self._ours.page, _HTML)
@@ -74,6 +89,8 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         """Take in keys that are held, or a request."""
+        if not self._known_host():
+            return
         length = self.headers.get("Content-Length", "")
         if not length.isdecimal() or int(length) > _LONGEST:
             self._refuse(

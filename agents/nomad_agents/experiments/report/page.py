@@ -10,7 +10,6 @@ from nomad_agents.experiments.report.embed import Picture, data_uri, picture
 from nomad_agents.experiments.report.section import NoVideo, Section, Tabular
 from nomad_agents.experiments.report.templates import find_template
 
-_IDS = ("reading", "summary", "tables", "making", "task-title", "task-text")  # of the templates
 _VERDICTS = {"holds": "holds", "holds in part": "part", "does not hold": "fails"}
 
 
