@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from conftest import SmallRoom
-from nomad_agents.checkpoint import load_checkpoint
+from nomad_agents.checkpoint import load_checkpoint, save_checkpoint
 from nomad_agents.cli.main import main
 
 NOMAD = [sys.executable, "-W", "error", "-m", "nomad_agents.cli.main"]
@@ -172,3 +172,22 @@ def test_who_stops_reading_causes_no_traceback(arguments: list[str]) -> None:
     os.close(writer)
     assert "Traceback" not in ended.stderr and "Exception" not in ended.stderr, ended.stderr
     assert ended.returncode in (0, 1)
+
+
+def test_a_room_that_has_lost_starts_is_refused(
+    tmp_path: Path, small_room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    room, path = tmp_path / "small.xml", tmp_path / "a.npz"
+    text = small_room.read_text()
+    room.write_text(text)
+    command = ["train", "--room", str(room), "--out", str(path), "--max-decisions", "1"]
+    assert main(command) == 0
+    checkpoint = load_checkpoint(path)
+    state = {**checkpoint.training, "next_start": 2, "testing": False}
+    save_checkpoint(path, checkpoint.agent, checkpoint.room, checkpoint.robot, state)
+    room.write_text(text.replace('<site name="start_2" pos="-2.5 1 0"/>', ""))
+    capsys.readouterr()
+    assert main([*command[:-2], "--resume"]) == 2
+    assert "it is of a room with more starts than 2" in capsys.readouterr().err
+    assert main([*command[:-2], "--resume", "--agent", "planner"]) == 2
+    assert "--agent 'planner': --resume goes on with the agent in --out" in capsys.readouterr().err

@@ -102,3 +102,28 @@ def test_a_folder_that_cannot_be_written(
     assert run(small_room, tmp_path) == 2
     error = capsys.readouterr().err
     assert error.startswith("nomad-mj: cannot write curves to ") and error.count("\n") == 1
+
+
+def test_when_the_disk_is_full_the_agent_is_kept_and_it_is_told_in_a_line(
+    small_room: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Full:
+        def add_scalar(self, *_: object) -> None:
+            raise OSError(28, "No space left on device")
+
+        flush = close = add_scalar
+
+    begin = Curves.begin
+
+    def fills(self: Curves, training: Training) -> None:
+        begin(self, training)
+        monkeypatch.setattr(self, "_writer", Full())
+
+    monkeypatch.setattr(Curves, "begin", fills)
+    assert run(small_room, tmp_path) == 2
+    error = capsys.readouterr().err.splitlines()[-1]
+    assert error.startswith("nomad-mj: cannot write curves to ") and "No space left" in error
+    assert load_checkpoint(tmp_path / "a.npz").training["decisions"] > 0

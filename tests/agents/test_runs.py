@@ -201,3 +201,15 @@ def test_a_room_edited_while_a_run_is_under_way_is_not_the_runs(
 
     do_runs([run], work, tmp_path, 1, lambda _: None)
     assert stored_result(run, tmp_path) is None
+
+
+def test_a_digest_of_a_robot_is_of_its_data_sheet_too(ring_robot: Callable[[], Path]) -> None:
+    path = ring_robot()
+    run = replace(runs(1)[0], robot=str(path))
+    told = [module._key(run)]  # pyright: ignore[reportPrivateUsage]
+    for text in ("base: base", "base: base\nnumbers: {radius: 0.3}"):
+        path.with_suffix(".yaml").write_text(text)
+        told.append(module._key(run))  # pyright: ignore[reportPrivateUsage]
+    path.with_suffix(".yaml").unlink()
+    assert told[0] == module._key(run)  # pyright: ignore[reportPrivateUsage]
+    assert len({str(each["files"]) for each in told}) == 3

@@ -57,3 +57,5 @@ def test_the_command_tells_and_its_exit_code_judges(capsys: pytest.CaptureFixtur
 def test_a_long_run_of_nothing_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["bench", "--soak", "--soak-hours", "0"]) == 2
     assert "--soak-hours 0.0: must be above 0" in capsys.readouterr().err
+    assert main(["bench", "--soak", "--soak-resets", "64", "--soak-robots", "64"]) == 2
+    assert "resets 64: must be 128 or more, two for each robot" in capsys.readouterr().err
