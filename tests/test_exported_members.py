@@ -26,7 +26,7 @@ PUBLIC = {
     "nomad_mj.arenas": "Arena FloorPlan Geodesic Nearby check_arena goal_site near_model",
     "nomad_mj.movers": (
         "Drift Movers Moving MovingBody MovingGoal MovingObstacles Stroll Walk Walker Walkers "
-        "add_obstacles place_goal read_moving"
+        "add_obstacles find_room_for place_goal read_moving"
     ),
     "nomad_mj.rooms": (
         "Box Cylinder FREE OCCUPIED Occupancy Polygon Room UNKNOWN concave_room convex_room "

@@ -16,7 +16,7 @@ FLOORS = (
     ("perception", "motion", "_gl"),
     ("values", "guard"),
     ("assets", "robots", "arenas"),
-    ("movers", "rooms"),
+    ("movers", "rooms", "reading"),
     ("scene",),
     ("tasks",),
     ("envs",),

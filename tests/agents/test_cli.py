@@ -142,7 +142,7 @@ def test_train_prints_one_line_of_json_last(run: Run, small_room: Path, tmp_path
     report = json.loads(said.out)  # the only line: the rest is for people, on standard error
     assert said.code == 0 and list(report) == TRAIN_KEYS and report["starts"] == 3
     assert report["reactions"] > 0 and report["sim_s"] > 0 and report["wall_s"] > 0
-    assert "gave up, having solved 0 of 3 starts, after " in said.err
+    assert re.search(r"gave up, having solved \d of 3 starts, after \d+ decisions: ", said.err)
     assert [file.name for file in path.parent.iterdir()] == ["a.npz"]
 
 
