@@ -53,8 +53,16 @@ def read_room(path: Path) -> mujoco.MjSpec:
         A plane that is not its floor.
     """
     spec = _read("room", path)
-    for geom in [g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_PLANE]:
-        if geom.parent != spec.worldbody or abs(geom.pos[2]) > _FLOOR_SLACK:
+    compiled = spec.copy()
+    with quietly():
+        model = compiled.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    pairs = list(zip(spec.geoms, compiled.geoms, strict=True))
+    for geom, place in [(g, c.id) for g, c in pairs if g.type == mujoco.mjtGeom.mjGEOM_PLANE]:
+        if data.geom_xmat[place, 8] < 1 - _FLOOR_SLACK:
+            continue  # it is not level: see `FloorPlan`
+        if model.geom_bodyid[place] or abs(data.geom_xpos[place, 2]) > _FLOOR_SLACK:
             raise ModelError(
                 f"room file {str(path)!r}: plane {geom.name!r} is no floor at height 0; write what "
                 "stands in the room as boxes or other solids"

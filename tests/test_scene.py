@@ -179,3 +179,9 @@ def test_a_plane_that_is_no_floor_is_refused(own_room: OwnRoom) -> None:
     raised = own_room('<geom name="stage" type="plane" size="1 1 .1" pos="0 0 .3"/>')
     with pytest.raises(ModelError, match="plane 'stage' is no floor at height 0; write"):
         build_scene(raised, "nomad200")
+
+
+def test_a_slope_through_the_origin_is_refused(own_room: OwnRoom) -> None:
+    slope = own_room('<geom name="slope" type="plane" size="5 5 .1" euler="10 0 0"/>')
+    with pytest.raises(ModelError, match=r"'(room/)?slope'"):
+        build_scene(slope, "nomad200")
