@@ -34,7 +34,8 @@ class TrainingConfig:
     max_passes : int
         Give up after so many passes.
     max_decisions : int
-        Give up after so many decisions: at the end of an episode, with a last test; 0 for no limit.
+        Give up after so many decisions, at the end of an episode; where tests are short, with a
+        last one. 0 for no limit.
     episode_decisions, test_decisions : int
         A learning episode, a test episode is given up after so many decisions.
     starts : tuple of int
@@ -152,7 +153,7 @@ def train(
     while not training.done and training.passes <= config.max_passes:
         spent = config.max_decisions and training.decisions >= config.max_decisions
         if spent and not training.testing:
-            if not training.next_start:
+            if config.whole_tests or not training.next_start:
                 break
             training.testing, training.next_start = True, 0  # a last test, of what it knows now
         began = time.perf_counter()

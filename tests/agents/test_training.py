@@ -132,10 +132,11 @@ def test_a_pass_learns_from_every_start_then_tests_every_start(
 
 
 @pytest.mark.parametrize(
-    ("spent_in", "asked"), [(1, [(0, 3)]), (3, [(0, 3)]), (5, [(0, 3), (0, 3)])]
+    ("spent_in", "whole", "asked"),
+    [(1, False, 1), (3, False, 0), (5, False, 1), (6, False, 1), (5, True, 3), (6, True, 6)],
 )
-def test_a_training_that_has_spent_its_decisions_is_asked_once_more(
-    env: PathFinding, monkeypatch: pytest.MonkeyPatch, spent_in: int, asked: list[tuple[int, int]]
+def test_a_training_that_has_spent_its_decisions_is_asked_once_more_if_that_is_short(
+    env: PathFinding, monkeypatch: pytest.MonkeyPatch, spent_in: int, whole: bool, asked: int
 ) -> None:
     episodes: list[bool] = []
 
@@ -145,10 +146,11 @@ def test_a_training_that_has_spent_its_decisions_is_asked_once_more(
 
     monkeypatch.setattr(module, "run_episode", episode)
     agent, training = new(env)
-    train(env, agent, TrainingConfig(max_decisions=10 * spent_in), training)
+    config = TrainingConfig(max_decisions=10 * spent_in, whole_tests=whole)
+    train(env, agent, config, training)
     assert episodes.count(True) == spent_in and training.decisions == 10 * spent_in
-    assert episodes.count(False) == 3 * len(asked) and not episodes[-1]
-    assert (training.solved, training.tested, training.done) == (*asked[-1], False)
+    assert episodes.count(False) == asked
+    assert training.solved == 0 and not training.done
 
 
 def test_short_tests_leave_learning_as_it_is(env: PathFinding, whole: Learnt) -> None:
