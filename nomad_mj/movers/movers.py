@@ -237,9 +237,13 @@ def find_room_for(movers: Movers, starts: FloatArray) -> None:
         At none of some, which are spread over them.
     """
     tried: list[list[float]] = starts[:: max(len(starts) // _TRIED, 1)].tolist()
-    errors = [error for x, y, _ in tried if (error := _error_at(movers, (x, y)))]
-    if len(errors) == len(tried):
-        raise errors[0]
+    errors: list[StartError] = []
+    for x, y, _ in tried:
+        error = _error_at(movers, (x, y))
+        if error is None:
+            return
+        errors.append(error)
+    raise errors[0]
 
 
 def _error_at(movers: Movers, robot: tuple[float, float]) -> StartError | None:

@@ -61,7 +61,10 @@ class _Handler(BaseHTTPRequestHandler):
 
         A page of another site whose name has been pointed to this machine calls it by that name.
         """
-        host = urlsplit(f"//{self.headers.get('Host', '')}").hostname or ""
+        try:
+            host = urlsplit(f"//{self.headers.get('Host', '')}").hostname or ""
+        except ValueError:  # a bracket that is not closed
+            host = ""
         bound = str(cast("tuple[str, int]", self.server.server_address)[0])
         if bound not in _LOOPBACK or host in (*_LOOPBACK, "localhost"):
             return True
