@@ -17,7 +17,9 @@ from nomad_mj.tasks import Start
 from nomad_mj.types import FloatArray
 
 LEARNER, STRAIGHT, PLANNER = ReactivePlanner.name, Straight.name, Planner.name
-BASELINE_SEEDS = 3  # they learn nothing: only the noise of their sensors differs between runs
+# Baselines learn nothing: only the noise of their sensors differs between runs. Who stands before a
+# wall until time is up costs more than who learns, and does so with any seed.
+BASELINE_SEEDS = {STRAIGHT: 1, PLANNER: 3}
 COSTLY_SEEDS = 5  # of cases that take minutes each: twenty of them would take half of the time
 
 
@@ -137,8 +139,8 @@ class Experiment(ABC):
         """Return a run for each case, agent and seed; fewer seeds of baselines and costly cases."""
 
         def seeds(case: str, agent: str) -> int:
-            most = BASELINE_SEEDS if agent != LEARNER else COSTLY_SEEDS
-            return min(study.seeds, most) if agent != LEARNER or case in costly else study.seeds
+            most = BASELINE_SEEDS.get(agent, COSTLY_SEEDS if case in costly else study.seeds)
+            return min(study.seeds, most)
 
         return [
             Run(self.name, case, agent, study.config, room or study.room, study.robot, seed)
