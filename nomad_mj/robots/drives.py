@@ -21,6 +21,7 @@ from nomad_mj.types import FloatArray, IntArray, MotionLimits
 _SYNCHRO = ("translate", "steer", "turret")
 _ACCELERATION = 0.76  # [m/s2] where the file says nothing, that of the Nomad 200
 _TURN_ACCELERATION = 2.0  # [rad/s2]
+_UPRIGHT = 0.9  # vertical part of the axis of a hinge that steers; some are raked
 
 
 class Encoders(NamedTuple):
@@ -99,10 +100,18 @@ def _require_servo(named: NamedModel, name: str, actuator: int) -> None:
 
 
 def _hinge(named: NamedModel, name: str, actuator: int) -> int:
-    """Return the hinge that a motor turns."""
-    joint = joint_of(named.model, actuator)
-    if joint < 0 or named.model.jnt_type[joint] != mujoco.mjtJoint.mjJNT_HINGE:
+    """Return the hinge that a motor turns, to the left with what it is commanded."""
+    model = named.model
+    joint = joint_of(model, actuator)
+    if joint < 0 or model.jnt_type[joint] != mujoco.mjtJoint.mjJNT_HINGE:
         raise named.error(f": joint {name!r} must be a hinge that the actuator {name!r} turns")
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    if data.xaxis[joint][2] < _UPRIGHT or model.actuator_gear[actuator, 0] <= 0:
+        raise named.error(
+            f": actuator {name!r} must turn to the left; let the axis of its hinge point up, "
+            "and its gear be above 0"
+        )
     return joint
 
 
@@ -114,9 +123,9 @@ def _synchro(named: NamedModel, actuators: dict[str, int]) -> Driven:
     speeds = [top_speed(named, *motor) for motor in zip(names, ids, strict=True)]
     hinges = [_hinge(named, *motor) for motor in zip(names[1:], ids[1:], strict=True)]
     limits = MotionLimits(
-        speeds[0],
+        named.number("translate_max_speed", speeds[0]),
         named.number("translate_max_acceleration", _ACCELERATION),
-        speeds[1],
+        named.number("turn_max_speed", speeds[1]),
         named.number("steer_max_acceleration", _TURN_ACCELERATION),
     )
     encoders = _encoders(named, ids[:1], [1.0], hinges)

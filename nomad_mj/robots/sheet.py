@@ -14,6 +14,20 @@ from nomad_mj.values import number, numbers, read_yaml, refuse_others
 KINDS = ("synchro", "differential", "omni", "car")
 ROLES = {"synchro": ("translate", "steer", "turret"), "car": ("drive", "steer")}
 _KEYS = ("drive", "base", "motors", "numbers", "rings")
+_NUMBERS = (
+    "radius",
+    "translate_max_speed",
+    "translate_max_acceleration",
+    "turn_max_speed",
+    "turn_max_acceleration",
+    "steer_max_acceleration",
+    "wheel_radius",
+    "track",
+    "wheelbase",
+    "servo_gain",
+    "servo_max_speed",
+)
+_OF_RING, _OF_WHEEL = "<ring>_min_range", "<motor>_rollers"
 _MADE = ("body", "count", "bearings", "distance", "height", "half_angle", "rays", "range")
 _TAKEN = ("bumpers", "encoders", "odometry", "goal", "duration", "driven", "clearance", "outcome")
 _MOST_CONES, _MOST_RAYS = 720, 64
@@ -97,6 +111,9 @@ def read_sheet(robot: Path) -> Sheet:
     if drive and drive not in KINDS:
         raise ModelError(f"{what} drive {drive!r}: must be one of {', '.join(KINDS)}")
     values = _mapping(held.get("numbers", {}), f"{what} numbers")
+    ends = tuple(each.partition(">")[2] for each in (_OF_RING, _OF_WHEEL))
+    others = [name for name in values if not name.endswith(ends)]
+    refuse_others(dict.fromkeys(others), (*_NUMBERS, _OF_RING, _OF_WHEEL), f"{what} numbers")
     rings = _mapping(held.get("rings", {}), f"{what} rings")
     for name in rings:
         if name in _TAKEN or not name:

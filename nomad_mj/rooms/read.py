@@ -49,6 +49,8 @@ def read_room(
         raise ConfigError(f"within {within:g}: must be above 0 m")
     _check(path, resolution)
     if resolution is None and "image" not in read_yaml(path, "room"):
+        if math.isfinite(within):
+            raise ConfigError(f"within {within:g}: a part is taken of a map, and this is a plan")
         return furnish(read_plan(path), goal, starts)
     if resolution is None:
         grid = read_ros_map(path)

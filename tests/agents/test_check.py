@@ -101,6 +101,15 @@ def test_what_spoils_learning_is_told(
     assert any(told in fault for fault in faults), faults
 
 
+def test_a_robot_that_drives_backwards_is_told_of(
+    ring_robot: RingRobot, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = ring_robot(range(0, 360, 30), ('gear="1 0 0 0 0 0"', 'gear="-1 0 0 0 0 0"'))
+    code, found, _ = checked(capsys, str(path), "--out", str(tmp_path))
+    assert code == 1
+    assert any("straight, 2 m: ends 4.0" in fault for fault in found["faults"]), found["faults"]
+
+
 @pytest.mark.parametrize(
     ("file", "told"),
     [

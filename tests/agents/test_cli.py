@@ -149,7 +149,9 @@ def test_train_prints_one_line_of_json_last(run: Run, small_room: Path, tmp_path
 def test_train_names_its_file_in_a_folder(run: Run, small_room: Path, tmp_path: Path) -> None:
     said = run("train", "--room", small_room, "--max-decisions", 2, "--seed", 4, "--out", tmp_path)
     assert said.code == 0 and said.err == ""
-    assert [file.name for file in tmp_path.iterdir()] == ["small_reactive_planner_4.npz"]
+    assert [file.name for file in tmp_path.iterdir()] == [
+        "small_nomad200_reactive_planner_faithful_4.npz"
+    ]
 
 
 @pytest.mark.parametrize("agent", [*AGENTS, GOLDEN])

@@ -50,7 +50,7 @@ def test_train_writes_a_file_that_evaluate_drives(
     assert report["starts"] == 3 and report["decisions"] == 30 and report["wall_s"] > 0
     assert f"solved {report['solved']} of 3 starts after 30 decisions" in printed.err
     (path,) = tmp_path.iterdir()
-    assert path.name == "small_td3_ranges_2.npz"
+    assert path.name == "small_omnibot_td3_ranges_2.npz"
     content = load_deep(path)
     assert (content.room, content.robot, content.training["seed"]) == ("small", "omnibot", 2)
     assert content.conditions["range_noise"] == 0.1

@@ -102,6 +102,19 @@ def test_other_trainings_are_not_gone_on_with(
         assert whole.read_bytes() == before
 
 
+def test_nor_in_a_room_that_has_been_changed(
+    own_room: SmallRoom, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    room, path = own_room(), str(tmp_path / "a.npz")
+    arguments = ["train", "--max-decisions", "2", "--out", path, "--resume", "--room", str(room)]
+    assert main(arguments) == 0
+    capsys.readouterr()
+    room.write_text(room.read_text().replace("</worldbody>", "<geom size='.1'/></worldbody>"))
+    assert main(arguments) == 2
+    told = capsys.readouterr().err
+    assert "the file of its room has changed since" in told and told.count("\n") == 1
+
+
 def test_nor_with_other_sensors_under_the_same_name(
     ring_robot: SmallRoom,
     own_room: SmallRoom,

@@ -35,6 +35,9 @@ def test_rooms_are_written_and_load(tmp_path: Path, capsys: pytest.CaptureFixtur
         (["random", "--out", "room.txt"], "this writes .xml"),
         (["random", "--seed", "-1"], "seed -1: must be 0 or more"),
         (["random", "--resolution", "0.1"], "takes no --resolution"),
+        (["a.png", "--resolution", "0.1", "--seed", "0"], "--seed: only for a room that is made"),
+        (["plan.yaml", "--difficulty", "0.5"], "--difficulty: only for a room that is made up"),
+        (["plan.yaml", "--within", "3"], "within 3: a part is taken of a map, and this is a plan"),
         (["maze", "--difficulty", "2"], "difficulty 2: must be 0 to 1"),
         (["maze", "--goal", "here"], "goal 'here': must be X,Y in metres"),
         (["maze", "--goal", "nan,1"], "goal"),
@@ -56,6 +59,7 @@ def test_mistakes_are_told_in_one_line(
     monkeypatch.chdir(tmp_path)
     image(tmp_path / "a.png")
     (tmp_path / "paper.xml").write_text("<mujoco/>")
+    (tmp_path / "plan.yaml").write_text("size: [6, 4]\n")
     assert main(["room", *arguments]) == 2
     said = capsys.readouterr().err
     assert told in said and said.count("\n") == 1

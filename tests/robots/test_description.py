@@ -32,6 +32,13 @@ def test_numbers_are_read_from_the_file(ring_robot: RingRobot) -> None:
     assert robot.bumpers == ("bumper_0",)
 
 
+def test_a_robot_may_be_slower_than_its_motors(ring_robot: RingRobot) -> None:
+    slow = '<custom><numeric name="translate_max_speed" data="0.3"/>'
+    slow += '<numeric name="turn_max_speed" data="0.7"/>'
+    limits = build_scene("empty_room", ring_robot([0], ("<custom>", slow))).robot.limits
+    assert (limits.translate, limits.turn) == (0.3, 0.7)
+
+
 def test_bumpers_may_be_missing(ring_robot: RingRobot) -> None:
     path = ring_robot([0], ('<touch name="bumper_0" site="bumper"/>', ""))
     assert build_scene("empty_room", path).robot.bumpers == ()
@@ -56,6 +63,18 @@ BAD = {
     "radius < 0": ('data="0.2"', 'data="-2"', "radius is -2", "above 0"),
     "no limits": (' ctrlrange="-0.5 0.5"', "", "actuator 'translate'", "needs a ctrlrange"),
     "ball": ('type="slide" axis="1 0 0"', 'type="ball"', "'base'", "slide joints along x and y"),
+    "down": (
+        'joint name="steer" axis="0 0 1"',
+        'joint name="steer" axis="0 0 -1"',
+        "'steer'",
+        "up",
+    ),
+    "gear": (
+        '<intvelocity name="steer"',
+        '<intvelocity gear="-1" name="steer"',
+        "actuator 'steer' must turn to the left",
+        "its gear be above 0",
+    ),
     "fixed ring": (
         '<joint name="turret" axis="0 0 1"/>',
         '<joint name="turret" axis="0 0 1"/></body><body name="fixed" pos="0 0 0.3">',

@@ -165,6 +165,10 @@ WRONG = {
     "kind": ("drive: legs\n" + LIDAR, "must be one of synchro, differential, omni, car"),
     "key": ("wheels: 2\n" + LIDAR, "knows no 'wheels'; there are: drive, base, motors"),
     "number": ("numbers: {radius: wide}\n" + LIDAR, "radius 'wide': must be a number"),
+    "no such number": (
+        "numbers: {wheel_radios: 1}\n" + LIDAR,
+        "numbers knows no 'wheel_radios'; there are: radius, translate_max_speed",
+    ),
     "radius": ("numbers: {radius: 0}\n" + LIDAR, "its radius is 0; it must be above 0"),
     "ring": ("rings: {lidar: {height: 1}}", "needs count, or bearings"),
     "rays": ("rings: {lidar: {count: 0}}", "count 0: must be a number from 1 to 720"),

@@ -48,10 +48,10 @@ class MakeRoom:
     """How many starts, spread evenly; up to 20 by default."""
     within: float = math.inf
     """Of a map, only what is no farther than so many metres from the goal in x and y."""
-    seed: int = 0
-    """Of a room or a maze that is made up."""
-    difficulty: float = 0.5
-    """Of these, from 0 to 1: more and larger obstacles, a larger maze."""
+    seed: int | None = None
+    """Of a room or a maze that is made up, 0 by default."""
+    difficulty: float | None = None
+    """Of these, from 0 to 1: more and larger obstacles, a larger maze; 0.5 by default."""
     json: bool = False
     """Print one line of JSON on standard output."""
 
@@ -80,6 +80,11 @@ class MakeRoom:
     def _room(self) -> Room:
         goal = parse_place("goal", self.goal)
         if self.source not in _MADE:
+            for option in ("seed", "difficulty"):
+                if getattr(self, option) is not None:
+                    raise ConfigError(
+                        f"--{option}: only for a room that is made up: {', '.join(_MADE)}"
+                    )
             return read_room(
                 Path(self.source),
                 resolution=self.resolution,
@@ -89,4 +94,5 @@ class MakeRoom:
             )
         if self.resolution is not None or math.isfinite(self.within):
             raise ConfigError(f"room {self.source}: takes no --resolution and no --within")
-        return furnish(_MADE[self.source](self.seed, self.difficulty), goal, self.starts)
+        difficulty = 0.5 if self.difficulty is None else self.difficulty
+        return furnish(_MADE[self.source](self.seed or 0, difficulty), goal, self.starts)

@@ -7,9 +7,10 @@ from typing import Any
 
 from rich.console import Console
 
-from nomad_agents.checkpoint import load_checkpoint, save_checkpoint, structure
+from nomad_agents.checkpoint import load_checkpoint, save_checkpoint
 from nomad_agents.cli.common import console, interruptible, output_file, print_json
 from nomad_agents.cli.progress import TrainingProgress
+from nomad_agents.cli.resuming import require_same_files, require_same_training, training_of
 from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.cli.train_deep import run_deep_training
 from nomad_agents.curves import Curves
@@ -17,11 +18,12 @@ from nomad_agents.deep import LEARNERS
 from nomad_agents.deep.environment import make_env
 from nomad_agents.deep.extra import require_extra
 from nomad_agents.deep.training import require_budget
+from nomad_agents.experiments.digest import digests
 from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner
 from nomad_agents.registry import find_agent, find_config
 from nomad_agents.training import Training, TrainingConfig, train, training_report
 from nomad_mj.envs import PathFinding
-from nomad_mj.errors import CheckpointError, ConfigError
+from nomad_mj.errors import ConfigError
 
 _OF_REACTIVE_PLANNER = ("config", "max_passes", "max_decisions", "resume")
 _OF_DEEP_LEARNERS = ("observation", "decisions")
@@ -53,7 +55,8 @@ class Train(TaskOptions):
     max_decisions: int = 0
     """Give up after so many decisions, at the end of an episode; 0: no limit."""
     out: str = "renders"
-    """Checkpoint to write, .npz, or a folder for it (ROOM_AGENT_SEED.npz)."""
+    """Checkpoint to write, .npz, or a folder for it (ROOM_ROBOT_AGENT_CONFIG_SEED.npz; of a deep
+    learner with the observation in place of CONFIG)."""
     resume: bool = False
     """Go on from the checkpoint --out, if there is one, to the same bits."""
     json: bool = False
@@ -77,7 +80,7 @@ class Train(TaskOptions):
         require_budget(self.decisions, 0, self.seed)
         require_extra(curves=bool(self.tensorboard))
         with self.path_finding() as test, interruptible():
-            name = f"{test.scene.arena.name}_{self.agent}_{self.observation}_{self.seed}"
+            name = self._name(test, self.observation)
             path = output_file(self.out, name, ".npz")
             task, goal = self._task_kwargs(), self._goal_place()
             made = make_env(settings, self.observation, self.room, self.robot, task, goal)
@@ -105,19 +108,24 @@ class Train(TaskOptions):
         )
         screen = console(json_wanted=self.json)
         with self.path_finding() as env, interruptible():
-            name = f"{env.scene.arena.name}_{ReactivePlanner.name}_{self.seed}"
+            name = self._name(env, self.config)
             path = output_file(self.out, name, ".npz")
             resume = self.resume and path.exists()
             agent, training = self._resume(env, path) if resume else (self._begin(env), Training())
+            conditions = self.conditions() | {"files": digests(self.room, self.robot)}
             with self._curves(name, resume=resume) as curves:
-                run_training(
-                    env, agent, settings, training, path, screen, self.conditions(), curves
-                )
+                run_training(env, agent, settings, training, path, screen, conditions, curves)
             report = training_report(env, agent, training)
             screen.print(f"{_verdict(report, training)}: {path}", soft_wrap=True)
         if self.json:
             print_json(report)
         return 0
+
+    def _name(self, env: PathFinding, variant: str) -> str:
+        """Return what tells this training from others: two in a folder keep out of each other."""
+        agent = self.agent if self.agent in LEARNERS else ReactivePlanner.name
+        scene = env.scene
+        return f"{scene.arena.name}_{scene.robot.name}_{agent}_{variant}_{self.seed}"
 
     def _curves(self, name: str, *, resume: bool) -> AbstractContextManager[Curves | None]:
         """Return what writes the curves of a run, None where none are wanted."""
@@ -145,36 +153,11 @@ class Train(TaskOptions):
         """Return the agent of the checkpoint to go on from, and how far it is."""
         if self.agent != ReactivePlanner.name:
             raise ConfigError(f"--agent {self.agent!r}: --resume goes on with the agent in --out")
-        config = find_config(self.config)
         checkpoint = load_checkpoint(path)
-        robot = env.scene.robot
-        wanted = (env.scene.arena.name, robot.name, robot.layout, self.seed, config)
-        layout = checkpoint.layout
-        found = (
-            checkpoint.room,
-            checkpoint.robot,
-            robot.layout if layout.matches(robot.layout) else layout,
-            checkpoint.training.get("seed"),
-            checkpoint.agent.config,
-        )
-        for what, mine, theirs in zip(
-            ("room", "robot", "set of sensors", "seed", "config"), wanted, found, strict=True
-        ):
-            if mine != theirs:
-                told = f": {theirs}, not {mine}" if isinstance(mine, str | int) else ""
-                raise CheckpointError(f"cannot resume {str(path)!r}: it is of another {what}{told}")
+        require_same_training(checkpoint, path, env.scene, self.seed, find_config(self.config))
+        require_same_files(checkpoint, path, digests(self.room, self.robot))
         self.require_same(checkpoint.conditions, str(path))
-        state = {k: v for k, v in checkpoint.training.items() if k != "seed"}
-        try:
-            training = structure(state, Training)
-        except Exception:
-            raise CheckpointError(f"checkpoint {str(path)!r} holds no state of training") from None
-        if not 0 <= training.next_start < len(env.scene.arena.starts):
-            raise CheckpointError(
-                f"cannot resume {str(path)!r}: it is of a room with more starts than "
-                f"{len(env.scene.arena.starts)}"
-            )
-        return checkpoint.agent, training
+        return checkpoint.agent, training_of(checkpoint, path, len(env.scene.arena.starts))
 
 
 def run_training(

@@ -4,8 +4,17 @@ import hashlib
 import re
 from pathlib import Path
 
+from nomad_mj.assets import find_robot, find_room
+from nomad_mj.robots import find_sheet
+
 _FILE = re.compile(rb"""\bfile\s*=\s*["']([^"']+)["']""")  # of <include>, <mesh>, <texture>, ...
 _FOLDER = re.compile(rb"""\b(?:asset|mesh|texture)dir\s*=\s*["']([^"']+)["']""")
+
+
+def digests(room: str, robot: str) -> list[str]:
+    """Return digests of the files of a room and of a robot, by name or path."""
+    path = find_robot(robot)
+    return [digest(find_room(room)), digest(path, find_sheet(path))]
 
 
 def digest(path: Path, beside: Path | None = None) -> str:

@@ -18,12 +18,11 @@ from typing import Any
 import cattrs
 
 from nomad_agents.checkpoint import write_atomically
-from nomad_agents.experiments.digest import digest
+from nomad_agents.experiments.digest import digests
 from nomad_agents.experiments.pool import do_in_processes
 from nomad_agents.registry import find_config
 from nomad_mj.assets import find_robot, find_room
 from nomad_mj.errors import OutputError
-from nomad_mj.robots import find_sheet
 
 Row = dict[str, Any]
 PACKAGES = ("nomad-mj", "mujoco", "numpy")
@@ -113,8 +112,7 @@ def _key(run: Run) -> Row:
     key = {**run.identity(), "edition": _EDITION}
     key["packages"] = {name: version(name) for name in run.packages()}
     key["parameters"] = run.parameters()
-    robot = find_robot(run.robot)
-    key["files"] = [digest(find_room(run.room)), digest(robot, find_sheet(robot))]
+    key["files"] = digests(run.room, run.robot)
     return json.loads(json.dumps(key))
 
 
