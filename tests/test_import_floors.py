@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[1]
 # A module may import what lies on a lower floor, and its own package.
 FLOORS = (
     ("types", "errors"),
-    ("geometry", "_gl_probe"),
+    ("geometry", "limits", "_gl_probe"),
     ("perception", "motion", "_gl"),
     ("values", "guard"),
     ("assets", "robots", "arenas"),

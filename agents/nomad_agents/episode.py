@@ -23,7 +23,7 @@ class Episode(NamedTuple):
     decisions, reactions, unmatched : int
         Moves made; those by a learnt reaction; situations unlike any exemplar.
     virtual_collisions, bumper_contacts : int
-        Moves that ended so.
+        Moves that ended so; moves in which something was touched, in whatever part.
     duration : float
         Simulated time [s].
     driven : float

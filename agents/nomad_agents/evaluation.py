@@ -113,11 +113,18 @@ def run_trial(
 ) -> Trial:
     """Run one greedy episode and measure it by the truth."""
     track: list[tuple[float, float]] = []
-    env.on_control_step = lambda: track.append(env.physics.pose()[:2])
+    before = env.on_control_step  # of whoever looks on, too
+
+    def look_on() -> None:
+        track.append(env.physics.pose()[:2])
+        if before is not None:
+            before()
+
+    env.on_control_step = look_on
     try:
         episode = run_episode(env, agent, seed=seed, start=start, max_decisions=max_decisions)
     finally:
-        env.on_control_step = None
+        env.on_control_step = before
     pose = env.motor.task.start_pose
     points = np.array([pose[:2], *track])
     return Trial(np.array(pose), episode, points, float(geodesic.length(points[:1])[0]))

@@ -85,7 +85,7 @@ class Training:
     Attributes
     ----------
     passes : int
-        Passes begun.
+        Passes begun; after a test that lost a start, the next one counts.
     testing : bool
         Whether the test of this pass is under way.
     next_start : int
@@ -153,7 +153,8 @@ def train(
     while not training.done and training.passes <= config.max_passes:
         spent = config.max_decisions and training.decisions >= config.max_decisions
         if spent and not training.testing:
-            if config.whole_tests or not training.next_start:
+            # Before `min_passes` a pass may end without a test.
+            if config.whole_tests or (training.tested and not training.next_start):
                 break
             training.testing, training.next_start = True, 0  # a last test, of what it knows now
         began = time.perf_counter()

@@ -135,7 +135,8 @@ class BatchPathFinding(BatchEnvironment):
         for world, move in asked.items():
             bumped = bool(self.worlds.bumpers[world].any())
             odometry = self.worlds.odometry[world].tolist()
-            driving = Driving(move, self._robot, self._lookout.motion, odometry, bumped)
+            touched = bool(self.worlds.touched[world].any())
+            driving = Driving(move, self._robot, self._lookout.motion, odometry, bumped, touched)
             self._moves[world] = _Underway(driving, move, goals[world].copy())
 
     def advance(self) -> npt.NDArray[np.bool_]:
@@ -179,9 +180,10 @@ class BatchPathFinding(BatchEnvironment):
             raise
         nearest = np.minimum.reduce(worlds.ranges[chosen], axis=1).tolist()
         bumped = np.logical_or.reduce(worlds.bumpers[chosen], axis=1).tolist()
-        for world, near, touched in zip(going, nearest, bumped, strict=True):
+        touched = np.logical_or.reduce(worlds.touched[chosen], axis=1).tolist()
+        for world, *told in zip(going, nearest, bumped, touched, strict=True):
             travel, odometry = worlds.tasks[world].travel, worlds.odometry[world].tolist()
-            self._moves[world].driving.take_in(travel, odometry, near, touched)
+            self._moves[world].driving.take_in(travel, odometry, *told)
 
     def _finish(self, world: int) -> None:
         """Note what became of the move of a world."""

@@ -78,9 +78,9 @@ class Worlds:
         self.ranges, self.bumpers = rows(robot.layout.count), rows(len(robot.bumpers))
         self.encoders, self.odometry = rows(len(robot.drive.encoders)), rows(4)
         self.goal = rows(2)
-        self._touched = rows(len(robot.bumpers))
+        self.touched = rows(len(robot.bumpers))
         self.worlds = [
-            World(number, self._simulations, self._moved, self._touched[number])
+            World(number, self._simulations, self._moved, self.touched[number])
             for number in range(self.count)
         ]
         self._poses = [world.pose for world in self.worlds]
@@ -126,7 +126,7 @@ class Worlds:
                 task.initialize_episode(nursery)
             told = task.get_observation(nursery)
             self._simulations.take(world, nursery)
-            self._touched[world] = nursery.bumpers()
+            self.touched[world] = nursery.bumpers()
             self.ranges[world] = task.ranges
             self.bumpers[world] = told["bumpers"]
             self.encoders[world] = told["encoders"]
@@ -175,7 +175,7 @@ class Worlds:
             tasks[world].odometry = tasks[world].own.reckon(own, poses[world])
         odometry = np.array([tasks[world].odometry for world in chosen])
         self.odometry[worlds] = odometry
-        self._touched[worlds] = bumpers
+        self.touched[worlds] = bumpers
         if self._bumpers_err:
             told = zip(chosen, bumpers, strict=True)
             bumpers = np.array([tasks[world].own.tell_bumpers(own) for world, own in told])

@@ -19,7 +19,7 @@ _TURN = 2 * math.pi
 class Move(NamedTuple):
     """What became of a move: distances in metres, `ticks` control steps.
 
-    `contact`: whether something was touched, in whatever part of the move.
+    `contact`: whether something was truly touched, in whatever part of the move.
     """
 
     outcome: Outcome
@@ -129,8 +129,8 @@ class Driving:
         How carefully to move, as of a `Lookout`.
     odometry : sequence of float, length 4
         As observed.
-    bumped : bool
-        Whether a bumper is touched already.
+    bumped, touched : bool
+        Whether a bumper reports a touch already; whether one is truly touched.
     """
 
     def __init__(
@@ -140,6 +140,7 @@ class Driving:
         motion: MotionConfig,
         odometry: Sequence[float],
         bumped: bool,
+        touched: bool,
     ) -> None:
         x, y = move.tolist()
         self._travel = _facing(Travel(0.0, 0.0, 0.0, 0.0), odometry)
@@ -150,7 +151,7 @@ class Driving:
             motion,
             CONTROL_TIMESTEP,
         )
-        self._bumped, self._contact = bumped, False
+        self._bumped, self._touched, self._contact = bumped, touched, False
         self._clearance = math.inf  # until the move is under way
         self._driven, self._ticks = 0.0, 0
 
@@ -171,13 +172,21 @@ class Driving:
         return None if self._move.done else command
 
     def take_in(
-        self, travel: Travel, odometry: Sequence[float], nearest: float, bumped: bool
+        self,
+        travel: Travel,
+        odometry: Sequence[float],
+        nearest: float,
+        bumped: bool,
+        touched: bool,
     ) -> None:
-        """Take in a control step: its way, the odometry, the shortest reading [m], contacts."""
+        """Take in a control step: its way, the odometry, the shortest reading [m], contacts.
+
+        `bumped` is what the bumpers report and the move heeds; what is counted is `touched`.
+        """
         self._travel = travel = _facing(travel, odometry)
         # What was touched before the move, and still is, is no contact of this move.
-        self._contact |= bumped and not self._bumped
-        self._bumped = bumped
+        self._contact |= touched and not self._touched
+        self._bumped, self._touched = bumped, touched
         self._clearance = min(self._clearance, nearest)
         self._driven += math.hypot(travel.forward, travel.sideways)
         self._ticks += 1

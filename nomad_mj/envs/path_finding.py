@@ -57,8 +57,8 @@ class PathFinding(dm_env.Environment):
     the move is done, stopped by a virtual collision (the robot then retracts), bumped or timed
     out. Observations are those of the motor task after the move, and of the move itself:
     ``duration`` [s], ``driven`` (length of the way, there and back) [m], ``clearance`` (shortest
-    reading on the way) [m], ``outcome`` (see `Outcome`), ``contact`` (1 if a bumper was touched,
-    in whatever part of the move). The reward is z of Eqs 6-8.
+    reading on the way) [m], ``outcome`` (see `Outcome`), ``contact`` (1 if a bumper was truly
+    touched, in whatever part of the move and whatever it reported). The reward is z of Eqs 6-8.
     Reaching the goal ends the episode with discount 0, the time limit with discount 1. A goal that
     moves is reached if it is there when a move ends, not if it comes by during one.
 
@@ -155,7 +155,9 @@ class PathFinding(dm_env.Environment):
         motor, lookout = self.motor, self._lookout
         task = motor.task
         bumped = bool(np.count_nonzero(task.bumpers))
-        driving = Driving(move, self.scene.robot, lookout.motion, task.odometry, bumped)
+        driving = Driving(
+            move, self.scene.robot, lookout.motion, task.odometry, bumped, task.own.touched
+        )
         while True:
             slack = lookout.slack(*driving.watched)
             command = driving.command(float(np.minimum.reduce(task.ranges + slack)))
@@ -169,7 +171,7 @@ class PathFinding(dm_env.Environment):
             self._ticks += 1
             bumped = bool(np.count_nonzero(task.bumpers))
             nearest = float(np.minimum.reduce(task.ranges))
-            driving.take_in(task.travel, task.odometry, nearest, bumped)
+            driving.take_in(task.travel, task.odometry, nearest, bumped, task.own.touched)
             if self.on_control_step is not None:
                 self.on_control_step()
 

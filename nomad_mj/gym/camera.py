@@ -31,6 +31,8 @@ class Camera:
         "overview", "top", "chase" or "side".
     size : (int, int), optional
         Width and height of the pictures [px], even; that of the view if None.
+    situation : SituationSpec, optional
+        Of the certainty grid that is shown.
 
     Raises
     ------
@@ -38,12 +40,14 @@ class Camera:
         A view that there is not, a size that a video cannot have.
     """
 
-    def __init__(self, scene: Scene, view: str, size: Size | None) -> None:
+    def __init__(
+        self, scene: Scene, view: str, size: Size | None, situation: SituationSpec | None = None
+    ) -> None:
         self._layout = make_layout(view, size)
         self._scene = scene
         self._studio: Studio | None = None
         self._trail: Trail | None = None
-        self._situation = SituationSpec()
+        self._situation = situation or SituationSpec()
 
     def begin(self, physics: NavigationPhysics) -> None:
         """Forget the way driven: an episode begins."""

@@ -29,8 +29,10 @@ def structure(what: str, given: _T | Mapping[str, Any], cls: type[_T]) -> _T:
     ConfigError
         Fields that the class does not have, or values that it does not take.
     """
-    if not isinstance(given, Mapping):
+    if isinstance(given, cls):
         return given
+    if not isinstance(given, Mapping):
+        raise ConfigError(f"{what}: must be a {cls.__name__}, or a mapping of its fields")
     try:
         return _CONVERTER.structure(cast(Mapping[str, Any], given), cls)
     except Exception as error:
@@ -55,6 +57,6 @@ def task_options(given: Mapping[str, Any] | None) -> dict[str, Any]:
     for name, value in options.items():
         kind = _TYPES.get(name)
         for cls in (kind, *get_args(kind)):
-            if isinstance(cls, type) and is_dataclass(cls):
+            if isinstance(value, Mapping) and isinstance(cls, type) and is_dataclass(cls):
                 options[name] = structure(f"task option {name!r}", value, cls)
     return options

@@ -88,7 +88,7 @@ class PathFindingEnv(NavigationEnv):
             goal=goal,
         )
         try:
-            camera = Camera(env.scene, view, picture_size(width, height))
+            camera = Camera(env.scene, view, picture_size(width, height), spec)
             observers: dict[str, Observer] = {
                 "situation": SituationObserver(env.scene, spec),
                 "ranges": RangesObserver(env.scene),

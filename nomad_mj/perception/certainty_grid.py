@@ -13,8 +13,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from nomad_mj.errors import ConfigError
+from nomad_mj.limits import MOST, TINY, require
 from nomad_mj.types import FloatArray, IntArray, RangeRing, SensorLayout
 
+MOST_CELLS = 401
 _BINS = 1440  # quarters of a degree: a turret's heading is rounded to this
 _AT_ONCE = 256  # grids that are filled together: what they take stays in the processor's cache
 
@@ -43,6 +46,18 @@ class GridSpec:
     perception_range: float = 2.0
     edge_certainty: float = 0.5
     unseen: float = 0.5
+
+    def __post_init__(self) -> None:
+        require(
+            self,
+            cells=(1, MOST_CELLS),
+            resolution=(TINY, MOST),
+            perception_range=(TINY, MOST),
+            edge_certainty=(0.0, 1.0),
+            unseen=(0.0, 1.0),
+        )
+        if self.cells % 2 != 1:
+            raise ConfigError(f"cells {self.cells}: must be odd, so that one is the robot's")
 
 
 class _Layer(NamedTuple):

@@ -12,6 +12,7 @@ from nomad_mj.types import FloatArray
 
 UNIT_CENTRES: FloatArray = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 GRID_FIELDS = ((3, 2), (4, 2))  # (side, stride) of the receptive fields: 21 -> 10 -> 4
+FEWEST_CELLS = 9  # along a side, for one field of each
 
 
 def code_signal(signal: npt.ArrayLike, width: float, *, circular: bool = False) -> FloatArray:

@@ -5,9 +5,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from nomad_mj.errors import ConfigError
 from nomad_mj.geometry import direction
+from nomad_mj.limits import MOST, TINY, require
 from nomad_mj.perception.certainty_grid import GridSpec, certainty_grid
-from nomad_mj.perception.coarse_coding import GRID_FIELDS, UNIT_CENTRES, code_grid, code_signal
+from nomad_mj.perception.coarse_coding import (
+    FEWEST_CELLS,
+    GRID_FIELDS,
+    UNIT_CENTRES,
+    code_grid,
+    code_signal,
+)
 from nomad_mj.types import FloatArray, SensorLayout
 
 
@@ -34,6 +42,11 @@ class SituationSpec:
     intensity_scale: float = 5.0
     use_intensity: bool = True
     grid: GridSpec = field(default_factory=GridSpec)
+
+    def __post_init__(self) -> None:
+        require(self, width=(TINY, MOST), intensity_scale=(TINY, MOST))
+        if self.grid.cells < FEWEST_CELLS:
+            raise ConfigError(f"cells {self.grid.cells}: must be {FEWEST_CELLS} or more")
 
     @property
     def size(self) -> int:

@@ -102,6 +102,24 @@ def test_other_trainings_are_not_gone_on_with(
         assert whole.read_bytes() == before
 
 
+@pytest.mark.parametrize(
+    "wrong", [{"passes": -5}, {"passes": 0}, {"solved": -3}, {"solved": 3, "tested": 2}]
+)
+def test_a_state_that_there_cannot_be_is_refused(
+    whole: Path,
+    small_room: Path,
+    tmp_path: Path,
+    wrong: dict[str, int],
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    held = load_checkpoint(whole)
+    path, state = tmp_path / "a.npz", {**held.training, "done": False, **wrong}
+    save_checkpoint(path, held.agent, held.room, held.robot, state, held.conditions)
+    assert main(["train", "--room", str(small_room), "--out", str(path), "--resume"]) == 2
+    told = capsys.readouterr().err
+    assert "holds no state of training" in told and told.count("\n") == 1
+
+
 def test_nor_in_a_room_that_has_been_changed(
     own_room: SmallRoom, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

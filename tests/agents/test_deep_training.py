@@ -119,6 +119,23 @@ def test_a_foreign_environment_is_refused() -> None:
         make_env(small("sac"), "dict")
 
 
+def test_ppo_learns_from_every_whole_rollout(small_room: Path) -> None:
+    settings, made = small("ppo"), list[DeepAgent]()
+
+    def look(agent: DeepAgent, decisions: int, sim_s: float) -> None:
+        made.append(agent)
+
+    with closing(make_env(settings, "ranges", small_room, ROBOT)) as learning:
+        agents = [train_deep(settings, learning, 3, decisions) for decisions in (32, 63, 64)]
+        train_deep(settings, learning, 3, 64, 32, look)
+        with pytest.raises(ConfigError, match="decisions 31: PPO learns nothing from fewer"):
+            train_deep(settings, learning, 3, 31)
+    once, still_once, twice = map(bits, agents)
+    assert once == still_once != twice == bits(made[-1])
+    assert bits(made[0]) != once, "seen in the middle, before it learns from the rollout"
+    assert len(made) == 2
+
+
 @pytest.mark.parametrize(("decisions", "every", "seed"), [(0, 0, 0), (5, -1, 0), (5, 0, -1)])
 def test_wrong_numbers_are_refused(decisions: int, every: int, seed: int) -> None:
     with pytest.raises(ConfigError, match=r"(decisions 0|every -1|seed -1): must be [01] or more$"):

@@ -138,6 +138,21 @@ def test_real_episodes_keep_the_laws_and_repeat(env: PathFinding) -> None:
         assert other.episode.clearance != trials[0].episode.clearance  # other noise
 
 
+def test_who_looks_on_still_does(env: PathFinding) -> None:
+    agent, seen = Straight(env.scene.robot.layout, FAITHFUL), list[int]()
+
+    def look_on() -> None:
+        seen.append(1)
+
+    env.on_control_step = look_on
+    try:
+        (trial,) = evaluate(env, agent, draw_starts(env, 1, 3), 0, 1)
+        assert len(seen) == len(trial.track) - 1 > 0
+        assert env.on_control_step is look_on
+    finally:
+        env.on_control_step = None
+
+
 def test_starts_are_drawn_where_the_robot_fits(env: PathFinding) -> None:
     starts, goal = draw_starts(env, 300, 5), env.scene.arena.goal
     assert starts.shape == (300, 3) and np.array_equal(starts, draw_starts(env, 300, 5))

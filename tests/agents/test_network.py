@@ -1,5 +1,7 @@
 """The modular network: Eqs 9-10, the rule of k_ind, categories on demand, growth."""
 
+import copy
+import pickle
 from collections.abc import Callable
 from typing import Any
 
@@ -39,6 +41,26 @@ def test_tuned_keeps_the_equations_but_other_numbers() -> None:
     assert (TUNED.k_ind, TUNED.no_match, TUNED.situation.circular) == (0.02, "plan", True)
     assert (TUNED.planner.margin, FAITHFUL.planner.margin) == (0.25, 0.15)
     assert TUNED.action == FAITHFUL.action
+
+
+def through_a_pickle(network: Network) -> Network:
+    return pickle.loads(pickle.dumps(network))
+
+
+@pytest.mark.parametrize("clone", [copy.deepcopy, through_a_pickle])
+def test_a_copy_learns_on_as_the_first_would(clone: Callable[[Network], Network]) -> None:
+    first = line((0.0, 0), (0.5, 1), values=(-1.0, -2.0))
+    other = clone(first)
+    for network in (first, other):
+        network.value[0] = -5.0
+        network.situation[1] += 0.25
+        network.add_exemplar(np.full(network.situation.shape[1], 0.75), 1)
+        network.add_category(np.zeros(2), -3.0)
+    for name, array in first.arrays().items():
+        np.testing.assert_array_equal(other.arrays()[name], array)
+    assert other.value[0] == -5.0
+    other.value[0] = -6.0
+    assert first.value[0] == -5.0, "what one learns the other does not"
 
 
 def test_nothing_is_known_at_first() -> None:

@@ -133,7 +133,7 @@ def test_a_pass_learns_from_every_start_then_tests_every_start(
 
 @pytest.mark.parametrize(
     ("spent_in", "whole", "asked"),
-    [(1, False, 1), (3, False, 0), (5, False, 1), (6, False, 1), (5, True, 3), (6, True, 6)],
+    [(1, False, 1), (3, False, 1), (5, False, 1), (6, False, 1), (5, True, 3), (6, True, 6)],
 )
 def test_a_training_that_has_spent_its_decisions_is_asked_once_more_if_that_is_short(
     env: PathFinding, monkeypatch: pytest.MonkeyPatch, spent_in: int, whole: bool, asked: int

@@ -80,7 +80,8 @@ def test_control_steps_of_a_move_are_those_of_the_motor_task(
 @pytest.mark.parametrize("phase", [range(5, 8), range(0)])
 def test_a_touch_counts_in_whatever_part_of_a_move(env: PathFinding, phase: range) -> None:
     lookout = Lookout(env.scene.robot.layout, MotionConfig())
-    driving = Driving(np.array([0.0, 0.5]), env.scene.robot, lookout.motion, (0, 0, 0, 0), False)
+    robot, motion = env.scene.robot, lookout.motion
+    driving = Driving(np.array([0.0, 0.5]), robot, motion, (0, 0, 0, 0), False, False)
     heading = gone = 0.0
     for tick in range(200):
         command = driving.command(5.0)
@@ -88,18 +89,24 @@ def test_a_touch_counts_in_whatever_part_of_a_move(env: PathFinding, phase: rang
             break
         way, turn = command[0] * 0.05, command[1] * 0.05
         heading, gone = heading + turn, gone + way
-        driving.take_in(Travel(way, 0.0, heading, 0.0), (0, 0, heading, 0), 5.0, tick in phase)
+        touched = tick in phase
+        odometry = (0, 0, heading, 0)
+        driving.take_in(Travel(way, 0.0, heading, 0.0), odometry, 5.0, touched, touched)
     done = driving.result()
     assert done.outcome is Outcome.MOVED and gone == pytest.approx(0.5, abs=0.01)
     assert done.contact == bool(phase)
 
 
-def test_what_is_touched_from_the_beginning_is_no_contact_of_the_move(env: PathFinding) -> None:
+@pytest.mark.parametrize("reported", [True, False])  # by bumpers that stick, or that fail
+def test_what_is_touched_from_the_beginning_is_no_contact_of_the_move(
+    env: PathFinding, reported: bool
+) -> None:
     lookout = Lookout(env.scene.robot.layout, MotionConfig())
-    driving = Driving(np.array([0.5, 0.0]), env.scene.robot, lookout.motion, (0, 0, 0, 0), True)
+    robot, motion = env.scene.robot, lookout.motion
+    driving = Driving(np.array([0.5, 0.0]), robot, motion, (0, 0, 0, 0), reported, True)
     for touched, contact in ((True, False), (False, False), (True, True), (False, True)):
         driving.command(5.0)
-        driving.take_in(Travel(0.0, 0.0, 0.0, 0.0), (0, 0, 0, 0), 5.0, touched)
+        driving.take_in(Travel(0.0, 0.0, 0.0, 0.0), (0, 0, 0, 0), 5.0, reported, touched)
         assert driving.result().contact == contact
 
 

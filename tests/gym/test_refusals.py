@@ -31,6 +31,12 @@ WRONG: list[tuple[str, dict[str, Any], str]] = [
         {"task_kwargs": {"range_noise": {"level": 2.0}}},
         r"range noise level 2.0: must be in \[0, 1\)",
     ),
+    (PATH_FINDING, {"situation": {"width": 0.0}}, "width 0.0: must be from 1e-09 to 1e"),
+    (PATH_FINDING, {"situation": {"grid": {"cells": 20}}}, "cells 20: must be odd"),
+    (PATH_FINDING, {"situation": {"grid": {"cells": 3}}}, "cells 3: must be 9 or more"),
+    (PATH_FINDING, {"situation": {"grid": {"cells": -3}}}, "cells -3: must be from 1 to 401"),
+    (PATH_FINDING, {"situation": {"grid": {"resolution": 0}}}, "resolution 0.0: must be from"),
+    (PATH_FINDING, {"situation": "circular"}, "situation: must be a SituationSpec, or a mapping"),
     (PATH_FINDING, {"situation": {"width": "wide"}}, "situation: is no SituationSpec: .*width"),
 ]
 

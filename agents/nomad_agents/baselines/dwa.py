@@ -26,9 +26,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from nomad_agents.baselines.classical import BLOCKED, NEAR, ClassicalAgent
-from nomad_agents.baselines.way import free_way, require
+from nomad_agents.baselines.way import free_way
 from nomad_agents.reactive_planner.config import ReactivePlannerConfig
 from nomad_mj.geometry import direction, wrap_angle
+from nomad_mj.limits import require
 from nomad_mj.perception import Percept
 from nomad_mj.types import FloatArray, SensorLayout
 

@@ -27,9 +27,10 @@ import numpy as np
 import numpy.typing as npt
 
 from nomad_agents.baselines.classical import BLOCKED, ClassicalAgent
-from nomad_agents.baselines.way import centres, free_way, require
+from nomad_agents.baselines.way import centres, free_way
 from nomad_agents.reactive_planner.config import ReactivePlannerConfig
 from nomad_mj.geometry import direction, wrap_angle
+from nomad_mj.limits import require
 from nomad_mj.perception import GridSpec, Percept
 from nomad_mj.types import FloatArray, SensorLayout
 

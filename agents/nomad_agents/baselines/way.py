@@ -8,7 +8,6 @@ from functools import lru_cache
 
 import numpy as np
 
-from nomad_mj.errors import ConfigError
 from nomad_mj.geometry import direction, wrap_angle
 from nomad_mj.motion import ActionSpec
 from nomad_mj.perception import GridSpec, Percept, cell_centres
@@ -90,11 +89,3 @@ def action_towards(heading: float, length: float, goal: FloatArray, spec: Action
 def longest_move(goal: FloatArray, spec: ActionSpec) -> float:
     """Return how long a move can be here [m]: none goes farther than the goal is."""
     return min(spec.longest, float(np.hypot(goal[0], goal[1])))
-
-
-def require(config: object, **limits: tuple[float, float]) -> None:
-    """Raise ConfigError for a field of a config that is not within its limits, ends included."""
-    for name, (least, most) in limits.items():
-        value = getattr(config, name)
-        if not least <= value <= most:
-            raise ConfigError(f"{name} {value}: must be from {least:g} to {most:.4g}")

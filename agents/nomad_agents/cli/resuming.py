@@ -36,8 +36,8 @@ def require_same_files(checkpoint: Checkpoint, path: Path, digests: list[str]) -
     `digests` are theirs now; a checkpoint of before these were kept tells of none.
     """
     before = checkpoint.conditions.get("files", digests)
-    for what, mine, theirs in zip(("room", "robot"), digests, before, strict=False):
-        if mine != theirs:
+    for place, what in enumerate(("room", "robot")):
+        if not isinstance(before, list) or before[place : place + 1] != [digests[place]]:
             raise CheckpointError(
                 f"cannot resume {str(path)!r}: the file of its {what} has changed since; train "
                 "anew, or go on in the new one with --agent and another --out"
@@ -57,7 +57,10 @@ def training_of(checkpoint: Checkpoint, path: Path, starts: int) -> Training:
         training = structure(state, Training)
     except Exception:
         raise CheckpointError(f"checkpoint {str(path)!r} holds no state of training") from None
-    if not 0 <= training.next_start < starts:
+    counts = [value for name, value in state.items() if name not in ("testing", "done")]
+    if min(counts) < 0 or training.passes < 1 or training.solved > training.tested:
+        raise CheckpointError(f"checkpoint {str(path)!r} holds no state of training")
+    if max(training.next_start, training.tested - 1) >= starts:
         raise CheckpointError(
             f"cannot resume {str(path)!r}: it is of a room with more starts than {starts}"
         )

@@ -77,7 +77,7 @@ class Train(TaskOptions):
 
     def _train_deep(self) -> int:
         screen, settings = console(json_wanted=self.json), LEARNERS[self.agent]()
-        require_budget(self.decisions, 0, self.seed)
+        require_budget(self.decisions, 0, self.seed, settings)
         require_extra(curves=bool(self.tensorboard))
         with self.path_finding() as test, interruptible():
             name = self._name(test, self.observation)

@@ -81,17 +81,23 @@ class Learner:
         report: Callable[[DeepAgent], None],
     ) -> None:
         """Learn from so many decisions; call `report` each time `every` more have been made."""
+        # PPO learns when a rollout is over: from one that is over with the budget, too.
+        learns_last = isinstance(self._settings, PpoSettings) and (
+            decisions % self._settings.rollout == 0
+        )
 
         def look_on() -> bool:
             over = training.decisions >= decisions
             with _own_chance():
                 if after_decision is not None:
                     after_decision(training)
-                if over or training.decisions % every == 0:
+                if not over and training.decisions % every == 0:
                     report(self.agent())
-            return not over
+            return learns_last or not over
 
         self.model.learn(decisions, callback=_Watch(training, look_on))
+        with _own_chance():
+            report(self.agent())
 
 
 class _Watch(BaseCallback):

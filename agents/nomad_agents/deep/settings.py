@@ -4,14 +4,13 @@ from dataclasses import dataclass
 from math import inf
 from typing import ClassVar, Literal, TypeAlias
 
-from nomad_agents.baselines.way import require
 from nomad_mj.errors import ConfigError
+from nomad_mj.limits import TINY, require
 
 Algorithm = Literal["sac", "td3", "ppo"]
-_TINY = 1e-9  # what must be above 0
 _SHARED = {
     "gamma": (0.0, 1.0),
-    "learning_rate": (_TINY, 1.0),
+    "learning_rate": (TINY, 1.0),
     "goal_bonus": (0.0, inf),
     "episode_decisions": (1.0, inf),
 }
@@ -89,7 +88,7 @@ class SacSettings(_OffPolicy):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require(self, entropy=(_TINY, inf))
+        require(self, entropy=(TINY, inf))
 
 
 @dataclass(frozen=True)
@@ -149,7 +148,7 @@ class PpoSettings:
             rollout=(2, inf),
             epochs=(1, inf),
             gae_lambda=(0, 1),
-            spread=(_TINY, inf),
+            spread=(TINY, inf),
         )
 
 

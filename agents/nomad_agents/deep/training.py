@@ -13,7 +13,7 @@ import gymnasium
 
 from nomad_agents.deep.agent import DeepAgent
 from nomad_agents.deep.extra import require_extra
-from nomad_agents.deep.settings import DeepSettings
+from nomad_agents.deep.settings import DeepSettings, PpoSettings
 from nomad_mj.errors import ConfigError
 
 
@@ -92,7 +92,7 @@ def train_deep(
     OutputError
         `log_folder` cannot be written.
     """
-    require_budget(decisions, every, seed)
+    require_budget(decisions, every, seed, settings)
     require_extra(curves=log_folder is not None)
     from nomad_agents.deep.learner import Learner  # takes seconds: it imports PyTorch
 
@@ -107,8 +107,13 @@ def train_deep(
         return learner.agent()
 
 
-def require_budget(decisions: int, every: int, seed: int) -> None:
+def require_budget(decisions: int, every: int, seed: int, settings: DeepSettings) -> None:
     """Raise ConfigError unless `train_deep` takes these numbers."""
+    if isinstance(settings, PpoSettings) and 1 <= decisions < settings.rollout:
+        raise ConfigError(
+            f"decisions {decisions}: PPO learns nothing from fewer than its rollout of "
+            f"{settings.rollout}"
+        )
     for name, given, least in (("decisions", decisions, 1), ("every", every, 0), ("seed", seed, 0)):
         if given < least:
             raise ConfigError(f"{name} {given}: must be {least} or more")

@@ -2,10 +2,15 @@
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Literal, get_args
 
+from nomad_mj.errors import ConfigError
+from nomad_mj.limits import MOST, TINY, require
 from nomad_mj.motion import ActionSpec
 from nomad_mj.perception import SituationSpec
+
+NoMatch = Literal["plan", "nearest", "stay"]
+NO_MATCHES: tuple[NoMatch, ...] = get_args(NoMatch)
 
 
 @dataclass(frozen=True)
@@ -33,6 +38,17 @@ class PlannerConfig:
     k_alpha: float = math.radians(45)
     occupied: float = 0.5
     margin: float = 0.15
+
+    def __post_init__(self) -> None:
+        require(
+            self,
+            k_length=(0.0, MOST),
+            k_rep=(0.0, MOST),
+            k_clear=(TINY, MOST),
+            k_alpha=(0.0, math.pi),
+            occupied=(0.0, 1.0),
+            margin=(0.0, MOST),
+        )
 
 
 @dataclass(frozen=True)
@@ -85,10 +101,23 @@ class ReactivePlannerConfig:
     eta_reward: float = 0.75
     eta_penalty: float = 0.075
     remember_good_actions: bool = False
-    no_match: Literal["plan", "nearest", "stay"] = "plan"
+    no_match: NoMatch = "plan"
     planner: PlannerConfig = field(default_factory=PlannerConfig)
     situation: SituationSpec = field(default_factory=SituationSpec)
     action: ActionSpec = field(default_factory=ActionSpec)
+
+    def __post_init__(self) -> None:
+        require(
+            self,
+            **dict.fromkeys(("k_dist", "k_ind", "k_z", "k_sigma"), (0.0, MOST)),
+            **dict.fromkeys(("beta", "sigma_floor"), (TINY, MOST)),
+            **dict.fromkeys(("xi", "epsilon"), (0.0, 1.0)),
+            **dict.fromkeys(("alpha_reward", "alpha_penalty"), (0.0, 1.0)),
+            **dict.fromkeys(("eta_reward", "eta_penalty"), (0.0, 1.0)),
+        )
+        if self.no_match not in NO_MATCHES:
+            known = ", ".join(NO_MATCHES)
+            raise ConfigError(f"no_match {self.no_match!r}: must be one of {known}")
 
 
 FAITHFUL = ReactivePlannerConfig()

@@ -78,6 +78,14 @@ class Network:
         self.weights: FloatArray = store["weights"][:e]
         self.category: IntArray = store["category"][:e]
 
+    def __getstate__(self) -> dict[str, np.ndarray]:
+        """Return what a copy needs; the public arrays are views, which would not survive it."""
+        return self._store | self.arrays()
+
+    def __setstate__(self, state: dict[str, np.ndarray]) -> None:
+        self._store = state
+        self.restore(state)
+
     def arrays(self) -> dict[str, np.ndarray]:
         """Return copies of all that has been learnt, by name."""
         return {name: getattr(self, name).copy() for name in CATEGORY_FIELDS + EXEMPLAR_FIELDS}

@@ -130,14 +130,15 @@ def settle(values: Mapping[str, Value | None], seed: int) -> Settings:
     for name, value in parts["config"].items():
         config = _replaced(config, name, value)
     agent = run[AGENT]
-    if agent in DEEP:
-        require_budget(run[DECISIONS], 0, seed)
+    own = _own(agent, parts["own"])
+    if own is not None and agent in DEEP:
+        require_budget(run[DECISIONS], 0, seed, own)
     return Settings(
         TaskOptions(**parts["task"]),
         agent,
         config,
         TrainingConfig(seed, **parts["train"]),
-        _own(agent, parts["own"]),
+        own,
         run[OBSERVATION],
         run[DECISIONS],
         run[STARTS],

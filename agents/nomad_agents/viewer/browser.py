@@ -87,9 +87,9 @@ def view_in_browser(
         serve(host, port, feed, session.controls) as address,
         Pictures(session, size) as pictures,
     ):
-        broadcast = session.on_step = _Broadcast(session, pictures, feed, going)
+        broadcast = _Broadcast(session, pictures, feed, going)
         ready(address)
-        with suppress(ClosedError):
+        with suppress(ClosedError), session.shown_by(broadcast):
             broadcast()
             while True:
                 session.advance()

@@ -2,7 +2,8 @@
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 
 import numpy as np
 from dm_control.rl.control import PhysicsError
@@ -45,7 +46,7 @@ class Session:
     controls : Controls
         What the driver asks for.
     agent : Agent, optional
-        Drives when it is asked to, from the beginning on if `agent_first`.
+        Drives when it is asked to, from the beginning on.
     start : str, int or sequence of float, optional
         Where each episode starts; None for starts of the room's at random.
     seed : int
@@ -90,6 +91,15 @@ class Session:
         self._seed: int | None = seed
         env.on_control_step = self._after_agent
         self._reset(start)
+
+    @contextmanager
+    def shown_by(self, on_step: Callable[[], None]) -> Generator[None, None, None]:
+        """Let `on_step` show the session in a ``with`` block, and nobody after it."""
+        self.on_step = on_step
+        try:
+            yield
+        finally:
+            self.on_step = lambda: None
 
     def advance(self) -> None:
         """Obey the controls, then drive one control step by hand or one move by the agent."""

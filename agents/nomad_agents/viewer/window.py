@@ -157,8 +157,8 @@ def view_in_window(session: Session, *, launch: Any = None, seconds: float | Non
             handle.cam.distance, handle.cam.elevation = 4.5, -35.0
             handle.cam.azimuth = math.degrees(session.env.physics.pose().heading)
             handle.opt.flags[mujoco.mjtVisFlag.mjVIS_RANGEFINDER] = 0
-        session.on_step = _Window(session, handle, data, until)
-        with suppress(ClosedError):
+        window = _Window(session, handle, data, until)
+        with suppress(ClosedError), session.shown_by(window):
             while True:
                 session.advance()
     finally:
