@@ -21,6 +21,7 @@ _VERDICTS = re.compile(r"(<!-- verdicts ([^>]+) -->\n)(.*?)(<!-- end -->)", re.D
 _VERDICT = re.compile(r"^\*\*(.*)\*\*: ", re.MULTILINE)
 _BENCHMARK = re.compile(r"(<!-- benchmark (\S+) ([^>]+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 _TABLE = re.compile(r"^## ([^\n]+)\n\n(.*?)(?=^## |\Z)", re.DOTALL | re.MULTILINE)
+_PARTIAL = re.compile(r"\(\d+ of \d+ runs so far\)")
 _PART = re.compile(r"^## (\S+): .*?(?=^## |\Z)", re.DOTALL | re.MULTILINE)
 
 
@@ -30,6 +31,9 @@ def measured(folder: Path, config: str) -> dict[str, str]:
     if not path.exists():
         return {}
     parts = {match[1]: match[0] for match in _PART.finditer(path.read_text(encoding="utf-8"))}
+    for name in [name for name, part in parts.items() if _PARTIAL.search(part)]:
+        print(f"{name}, {config}: not all runs are there; its table stays as it was")
+        del parts[name]
     # The document has headings and claims of its own.
     return {name: part[part.index("`nomad-mj") :].rstrip() + "\n" for name, part in parts.items()}
 

@@ -9,7 +9,15 @@ from nomad_agents.evaluation import draw_starts
 from nomad_agents.experiments import measures
 from nomad_agents.experiments.experiment import LEARNER, PLANNER, Experiment, Study, Verdict
 from nomad_agents.experiments.learnt import train_room, training_run
-from nomad_agents.experiments.paper import EXPERIMENTS, concave, moving, places, robots
+from nomad_agents.experiments.paper import (
+    EXPERIMENTS,
+    ablations,
+    adapting,
+    concave,
+    moving,
+    places,
+    robots,
+)
 from nomad_agents.experiments.reproduction import count_runs, trainings
 from nomad_agents.experiments.runs import Result, Run, do_runs
 
@@ -114,6 +122,65 @@ def test_a_verdict_follows_the_numbers() -> None:
     assert verdict(700, 1.0).holds == "holds"
     assert verdict(700, 0.9).holds == "holds in part"
     assert verdict(2000, 1.0).holds == "holds in part"
+
+
+def test_fig10_is_judged_at_each_place_however_many_runs_it_has() -> None:
+    def result(case: str, seed: int, reactions: int) -> Result:
+        row = {"learn_solved_all": True, "learn_reactions": reactions, "learn_plannings": 9}
+        row |= {"scratch_reactions": 500, "scratch_plannings": 9, "old_success_rate": 0.5}
+        return Result(Run("fig10", case, LEARNER, "tuned", "paper_room", "nomad200", seed), row)
+
+    goal, clutter = adapting.ADAPTED
+    results = [*(result(goal, s, 600) for s in range(20)), result(clutter, 0, 3000)]
+    verdict = EXPERIMENTS["fig10"].judge(results)
+    assert verdict.holds == "holds in part"
+    assert f"in {goal} 20 of 20 runs adapt" in verdict.reason and "3000 react" in verdict.reason
+    assert EXPERIMENTS["fig10"].judge(results[:20]).holds == "holds"
+    assert EXPERIMENTS["fig10"].judge(results[20:]).holds == "does not hold"
+
+
+def test_fig13_compares_the_same_seeds() -> None:
+    def result(case: str, seed: int, reactions: int) -> Result:
+        row = {"soon": True, "learn_reactions": reactions}
+        run = Run("fig13", case, LEARNER, "tuned", concave.ROOM, "nomad200", seed)
+        return Result(run, row)
+
+    memory, without = concave.MEMORY
+    results = [result(memory, seed, 2000 if seed < 2 else 10) for seed in range(20)]
+    results += [result(without, seed, 3000) for seed in range(2)]
+    verdict = EXPERIMENTS["fig13"].judge(results)
+    assert verdict.holds == "holds in part"
+    assert "1.5 times as many with the same 2 seeds" in verdict.reason
+
+
+def test_variants_in_which_nothing_is_different_do_not_count() -> None:
+    def result(case: str) -> Result:
+        row = {"learn_solved_all": True, "strict_success_rate": 0.9}
+        return Result(Run("ablations", case, LEARNER, "tuned", "paper_room", "nomad200", 0), row)
+
+    verdict = EXPERIMENTS["ablations"].judge([result(case) for case in ablations.VARIANTS])
+    different = len(ablations.VARIANTS) - 5  # as is, and what `tuned` has already
+    assert verdict.reason.startswith(f"{different} of {different} variants")
+
+
+@pytest.mark.parametrize("robot", ["khepera", "omnibot"])
+def test_echoes_are_lost_by_sonars_alone(robot: str) -> None:
+    study = Study("tuned", "paper_room", robot, 2)
+    cases = {run.case for run in EXPERIMENTS["noise"].runs(study)}
+    assert "lost echoes" not in cases and "none" in cases
+
+
+def test_places_are_others_than_the_room_that_was_learnt(small_room: Path) -> None:
+    fig9 = EXPERIMENTS["fig9"]
+    for room, wanted in (
+        ("clutter", {"goal (2.4, 4.2)", "goal (5, 2)"}),
+        (str(small_room), {"clutter", "goal (2.4, 4.2)"}),  # the other goal is in a wall
+    ):
+        runs = fig9.runs(Study("tuned", room, "nomad200", 1))
+        assert {run.case for run in runs} == wanted
+    (*_, run) = runs
+    assert run.rooms() == (str(small_room), "clutter")
+    assert training_run(run).rooms() == (str(small_room),)
 
 
 def vars_of(result: Result) -> dict[str, object]:

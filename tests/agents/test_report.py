@@ -159,8 +159,9 @@ def test_provenance_is_that_of_all_machines() -> None:
         Result(Run("fig6", "", agent, "faithful", "paper_room", "nomad200", 0), {}, machine=machine)
         for agent, machine in zip(("reactive_planner", "straight"), machines, strict=True)
     ]
-    facts = dict(provenance(study, results))
-    assert facts == dict(provenance(study, results[::-1]))
+    facts = dict(provenance(study, results, 2))
+    assert facts == dict(provenance(study, results[::-1], 2))
     assert facts["Machine"] == "A; B" and facts["Seeds"] == "0 to 1" and facts["Python"] == "3.12.1"
     assert facts["Runs"] == "1 of the learner, 1 of the baselines; 1.0 hours of computing"
     assert f"nomad-mj {nomad_mj.__version__}" in facts["Versions"]
+    assert "1 of the baselines, of 80 that" in dict(provenance(study, results, 80))["Runs"]

@@ -49,7 +49,9 @@ def test_all_that_is_promised_is_written(
     numbers = told[EXPERIMENT]["numbers"]["share of places with a suitable action"]
     assert numbers["reactive_planner"]["count"] == 2 and 0 <= numbers["planner"]["median"] <= 1
     folder = whole / "reproduce" / "tuned"
-    rows = list(csv.DictReader((folder / "runs.csv").read_text().splitlines()))
+    every = list(csv.DictReader((folder / "runs.csv").read_text().splitlines()))
+    rows = [row for row in every if row["experiment"] == EXPERIMENT]
+    assert len(every) == len(rows) + 2, "and the trainings"
     assert [row["seed"] for row in rows if row["agent"] == "reactive_planner"] == ["0", "1"]
     assert {row["mujoco"] for row in rows} == {mujoco.__version__}
     report = (whole / "report.html").read_text()
@@ -66,6 +68,27 @@ def test_a_second_call_does_nothing_but_read(call: Call, whole: Path) -> None:
     assert call(EXPERIMENT, "--seeds", "2", "--only-read", out=whole) == 0
     assert {path: path.stat().st_mtime_ns for path in runs.rglob("*.*")} == before
     assert (whole / "report.html").read_bytes() == report
+
+
+def test_what_is_there_of_more_is_told_as_a_part(
+    call: Call, whole: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = (whole / "report.html").read_bytes()
+    assert call(EXPERIMENT, "--seeds", "9", "--only-read", out=whole) == 0
+    assert "(5 of 13 runs so far)" in capsys.readouterr().out.replace("\n", " ")
+    tables = (whole / "reproduce" / "tuned" / "tables.md").read_text()
+    assert "(5 of 13 runs so far)" in tables
+    assert call(EXPERIMENT, "--seeds", "2", "--only-read", out=whole) == 0
+    assert (whole / "report.html").read_bytes() == before
+
+
+def test_an_agent_that_is_lost_learns_again(call: Call, whole: Path) -> None:
+    before = content(whole)
+    (agent, *_) = sorted((whole / "reproduce" / "tuned" / "runs" / "agents").glob("training*.npz"))
+    learnt = agent.read_bytes()
+    agent.unlink()
+    assert call(EXPERIMENT, "--seeds", "2", out=whole) == 0
+    assert len(agent.read_bytes()) == len(learnt) and content(whole) == before
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])

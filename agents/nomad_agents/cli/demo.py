@@ -15,7 +15,7 @@ from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.cli.train import run_training
 from nomad_agents.evaluation import Trial, draw_starts, summarise
 from nomad_agents.experiments.figures import Panel, draw_actions, draw_paths, lattice
-from nomad_agents.experiments.pictures import LATTICE, action_map, spread_out, way
+from nomad_agents.experiments.pictures import LATTICE, action_map, spread_starts, way
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.recording import record
 from nomad_agents.registry import find_config, make_agent
@@ -111,7 +111,7 @@ class Demo(TaskOptions):
     def _draw(self, env: PathFinding, agent: Agent, folder: Path, screen: Console) -> list[Trial]:
         """Write Figs 6 and 7; return the episodes of Fig 6."""
         scene = env.scene
-        starts = scene.arena.starts[spread_out(scene.arena.starts[:, :2], 12)]
+        starts = scene.arena.starts[spread_starts(env, 12)]
         trials = run_evaluation(env, agent, starts, self.seed, 100, screen)
         ways = [way(trial) for trial in trials]
         draw_paths([Panel("Paths after learning", scene, ways)], folder / "fig6")

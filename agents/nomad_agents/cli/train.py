@@ -112,7 +112,7 @@ class Train(TaskOptions):
             path = output_file(self.out, name, ".npz")
             resume = self.resume and path.exists()
             agent, training = self._resume(env, path) if resume else (self._begin(env), Training())
-            conditions = self.conditions() | {"files": digests(self.room, self.robot)}
+            conditions = self.conditions() | {"files": digests(self.robot, self.room)}
             with self._curves(name, resume=resume) as curves:
                 run_training(env, agent, settings, training, path, screen, conditions, curves)
             report = training_report(env, agent, training)
@@ -155,7 +155,7 @@ class Train(TaskOptions):
             raise ConfigError(f"--agent {self.agent!r}: --resume goes on with the agent in --out")
         checkpoint = load_checkpoint(path)
         require_same_training(checkpoint, path, env.scene, self.seed, find_config(self.config))
-        require_same_files(checkpoint, path, digests(self.room, self.robot))
+        require_same_files(checkpoint, path, digests(self.robot, self.room))
         self.require_same(checkpoint.conditions, str(path))
         return checkpoint.agent, training_of(checkpoint, path, len(env.scene.arena.starts))
 

@@ -11,10 +11,11 @@ _FILE = re.compile(rb"""\bfile\s*=\s*["']([^"']+)["']""")  # of <include>, <mesh
 _FOLDER = re.compile(rb"""\b(?:asset|mesh|texture)dir\s*=\s*["']([^"']+)["']""")
 
 
-def digests(room: str, robot: str) -> list[str]:
-    """Return digests of the files of a room and of a robot, by name or path."""
+def digests(robot: str, room: str, *others: str) -> list[str]:
+    """Return digests of the files of a room, of a robot and of other rooms, by name or path."""
     path = find_robot(robot)
-    return [digest(find_room(room)), digest(path, find_sheet(path))]
+    own = digest(path, find_sheet(path))
+    return [digest(find_room(room)), own, *(digest(find_room(each)) for each in others)]
 
 
 def digest(path: Path, beside: Path | None = None) -> str:

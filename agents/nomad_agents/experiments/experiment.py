@@ -103,6 +103,8 @@ class Experiment(ABC):
         What to tell of it.
     needs_trained : bool
         Whether its runs begin with the agents that have learnt the room.
+    shows_trained : bool
+        Whether its video shows the first of these agents, though its runs do not need them.
     """
 
     name: str
@@ -111,6 +113,7 @@ class Experiment(ABC):
     source: str
     table: tuple[TableRow, ...]
     needs_trained: bool = True
+    shows_trained: bool = False
 
     @abstractmethod
     def runs(self, study: Study) -> list[Run]:

@@ -1,7 +1,7 @@
 """Agents that have learnt, with the curve of their learning, kept for the experiments after it."""
 
 from collections.abc import Callable
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 
 import nomad_mj
@@ -67,7 +67,7 @@ def learn(
 
 def training_run(run: Run) -> Run:
     """Return the run in which the agent of another run has learnt its room."""
-    return replace(run, experiment=TRAINING, case="", agent=LEARNER)
+    return Run(TRAINING, "", LEARNER, run.config, run.room, run.robot, run.seed)
 
 
 def _checkpoint(run: Run, folder: Path) -> Path:
@@ -100,6 +100,12 @@ def new_learner(
     if result.run.seed == 0:
         keep_agent(result.run, folder, env, agent)
     return agent
+
+
+def forget_lost(run: Run, folder: Path) -> None:
+    """Remove the result of a training whose agent is not on file: it has to learn again."""
+    if not _checkpoint(run, folder).is_file():
+        (folder / run.file_name).unlink(missing_ok=True)
 
 
 def train_room(run: Run, folder: Path) -> Result:

@@ -70,9 +70,9 @@ def action_map(env: PathFinding, agent: Agent, places: FloatArray, seed: int) ->
     return actions
 
 
-def spread_out(places: FloatArray, count: int) -> list[int]:
-    """Return the indices of `count` of the places (n, 2) that lie far from each other."""
-    chosen = [0]
+def spread_starts(env: PathFinding, count: int) -> list[int]:
+    """Return the numbers of `count` of a room's starts, of all if it has fewer, far apart."""
+    places, chosen = env.scene.arena.starts[:, :2], [0]
     while len(chosen) < min(count, len(places)):
         off = np.hypot(*(places[:, None] - places[chosen]).transpose(2, 0, 1)).min(axis=1)
         chosen.append(int(np.argmax(off)))

@@ -17,12 +17,14 @@ from nomad_agents.experiments.experiment import (
 from nomad_agents.experiments.export import export
 from nomad_agents.experiments.illustrate import Illustration, illustrate
 from nomad_agents.experiments.report import NoVideo, Section, Video, provenance, write_report
-from nomad_agents.experiments.reproduction import Results
+from nomad_agents.experiments.reproduction import Results, count_runs
 from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.experiments.showreel import film
 from nomad_agents.experiments.statistics import spread
 from nomad_agents.experiments.tables import TextTable, as_markdown, make_table, strata
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
+
+PARTIAL = "%d of %d runs so far"
 
 
 class Finding(NamedTuple):
@@ -34,12 +36,21 @@ class Finding(NamedTuple):
 
 
 def find(experiments: Sequence[Experiment], results: Results, study: Study) -> list[Finding]:
-    """Return the findings of experiments of which every case has a result."""
+    """Return the findings of experiments of which every case has a result.
+
+    Where runs are missing the verdict says so.
+    """
     return [
-        Finding(each, make_table(each, results[each.name]), each.judge(results[each.name]))
+        Finding(each, make_table(each, results[each.name]), _judge(each, results, study))
         for each in experiments
         if _parts(each.runs(study)) <= _parts(result.run for result in results[each.name])
     ]
+
+
+def _judge(experiment: Experiment, results: Results, study: Study) -> Verdict:
+    there, wanted = len(results[experiment.name]), len(experiment.runs(study))
+    holds, reason = experiment.judge(results[experiment.name])
+    return Verdict(holds, reason if there == wanted else f"{reason} ({PARTIAL % (there, wanted)})")
 
 
 def _parts(runs: Iterable[Run]) -> set[tuple[str, str]]:
@@ -113,7 +124,9 @@ def present(
             shown = film(finding.experiment, study, runs, folder / "videos" / name)
         sections.append(_section(finding, study, pictures, shown))
     tell("writing the report")
-    write_report(report, sections, provenance(study, every), seeds=study.seeds)
+    made = provenance(study, every, count_runs([f.experiment for f in findings], study))
+    usual = (study.room, study.robot) == (DEFAULT_ROOM, DEFAULT_ROBOT)
+    write_report(report, sections, made, seeds=study.seeds, introduced=usual)
     missing = {s.video.reason for s in sections if videos and isinstance(s.video, NoVideo)}
     return [f"no video: {reason}" for reason in sorted(missing)]
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from nomad_agents.experiments.experiment import Experiment, Study
-from nomad_agents.experiments.learnt import TRAINING, train_room, training_run
+from nomad_agents.experiments.learnt import TRAINING, forget_lost, train_room, training_run
 from nomad_agents.experiments.paper import EXPERIMENTS
 from nomad_agents.experiments.runs import Result, Run, do_runs, stored_result
 
@@ -20,7 +20,10 @@ def work(run: Run, folder: Path) -> Result:
 
 def trainings(experiments: Sequence[Experiment], study: Study) -> list[Run]:
     """Return the runs in which the agents learn that the experiments begin with."""
-    runs = [run for each in experiments if each.needs_trained for run in each.runs(study)]
+    runs: list[Run] = []
+    for each in experiments:
+        own = each.runs(study)
+        runs += own if each.needs_trained else own[: each.shows_trained]
     return list(dict.fromkeys(training_run(run) for run in runs))
 
 
@@ -38,6 +41,8 @@ def reproduce(
 ) -> Results:
     """Return the results of experiments by name, doing the runs that are not on file.
 
+    Those of the trainings that they begin with are among them, under `TRAINING`.
+
     Parameters
     ----------
     experiments, study
@@ -49,16 +54,20 @@ def reproduce(
     after_run : callable
         Called once for each run, when its result is there.
     """
-    do_runs(trainings(experiments, study), work, folder, jobs, after_run)
+    lessons = trainings(experiments, study)
+    for run in lessons:
+        forget_lost(run, folder)
+    learnt = do_runs(lessons, work, folder, jobs, after_run)
     # Seed by seed: whoever stops early has all experiments, over fewer seeds.
     runs = sorted(_runs(experiments, study), key=lambda run: run.seed)
     done = do_runs(runs, work, folder, jobs, after_run)
-    return _by_name(experiments, study, {result.run: result for result in done})
+    return _by_name(experiments, study, {result.run: result for result in [*learnt, *done]})
 
 
 def on_file(experiments: Sequence[Experiment], study: Study, folder: Path) -> Results:
     """Return the results that are on file, and do nothing."""
-    held = {run: stored_result(run, folder) for run in _runs(experiments, study)}
+    every = [*trainings(experiments, study), *_runs(experiments, study)]
+    held = {run: stored_result(run, folder) for run in every}
     return _by_name(experiments, study, held)
 
 
@@ -70,7 +79,9 @@ def _by_name(
     experiments: Sequence[Experiment], study: Study, results: Mapping[Run, Result | None]
 ) -> Results:
     """Return the results that there are, in the order of the experiments' runs."""
+    wanted = {each.name: each.runs(study) for each in experiments}
+    wanted[TRAINING] = trainings(experiments, study)
     return {
-        each.name: [held for run in each.runs(study) if (held := results[run]) is not None]
-        for each in experiments
+        name: [held for run in runs if (held := results[run]) is not None]
+        for name, runs in wanted.items()
     }

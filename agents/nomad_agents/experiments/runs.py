@@ -73,6 +73,10 @@ class Run:
         """Return whose versions its numbers depend on."""
         return PACKAGES
 
+    def rooms(self) -> tuple[str, ...]:
+        """Return the rooms that it is done in: its own, and any others."""
+        return (self.room,)
+
     def identity(self) -> Row:
         """Return what tells it from other runs, wherever its files lie."""
         own = {"room": find_room(self.room).stem, "robot": find_robot(self.robot).stem}
@@ -112,7 +116,7 @@ def _key(run: Run) -> Row:
     key = {**run.identity(), "edition": _EDITION}
     key["packages"] = {name: version(name) for name in run.packages()}
     key["parameters"] = run.parameters()
-    key["files"] = digests(run.room, run.robot)
+    key["files"] = digests(run.robot, *run.rooms())
     return json.loads(json.dumps(key))
 
 

@@ -7,9 +7,10 @@ import mujoco
 import numpy as np
 
 import nomad_mj
-from nomad_agents.reactive_planner import FAITHFUL, ReactivePlanner, plan
+from nomad_agents.reactive_planner import FAITHFUL, ReactivePlanner, ReactivePlannerConfig, plan
 from nomad_agents.training import Training, TrainingConfig, train
-from nomad_mj.envs import percept_of
+from nomad_mj.arenas import Nearby
+from nomad_mj.envs import DEFAULT_ROBOT, percept_of
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.types import FloatArray
 
@@ -26,12 +27,18 @@ def timed(work: Callable[[], object], repeats: int) -> float:
 
 
 class BareLoop:
-    """The least that a control step can be: one call of `mj_step` on the same model."""
+    """The least that a control step can be: one call of `mj_step` on the same model.
+
+    That of a large room is the one that is simulated, of what is near the robot.
+    """
 
     def __init__(self, scene: Scene) -> None:
-        self._model = scene.model
-        self._data = mujoco.MjData(scene.model)
-        self._sub_steps = round(CONTROL_TIMESTEP / scene.model.opt.timestep)
+        self._model = scene.simulated()
+        self._data = mujoco.MjData(self._model)
+        if scene.near_model is not None:
+            nearby = Nearby(scene.model, self._model, scene.robot.reach)
+            nearby.update(*scene.arena.starts[0, :2].tolist())
+        self._sub_steps = round(CONTROL_TIMESTEP / self._model.opt.timestep)
         joints = [scene.model.joint(f"robot/{axis}").qposadr[0] for axis in ("base_x", "base_y")]
         self._data.qpos[joints] = scene.arena.starts[0, :2]
         self._data.ctrl[:] = _DRIVE
@@ -73,27 +80,31 @@ def training_ratio(room: str, decisions: int = 400) -> float:
         return training.wall_s / bare_s
 
 
-def _filled_agent(scene: Scene, exemplars: int) -> ReactivePlanner:
+def _filled_agent(scene: Scene, config: ReactivePlannerConfig, exemplars: int) -> ReactivePlanner:
     """Return an agent with so many exemplars, random but plausible."""
-    agent = ReactivePlanner(scene.robot.layout, FAITHFUL)
+    agent = ReactivePlanner(scene.robot.layout, config)
     rng = np.random.default_rng(0)
     categories = max(exemplars // 10, 1)
     for category in range(categories):
         agent.network.add_category(rng.uniform(-1, 1, 2), -float(category))
     for number in range(exemplars):
-        situation = rng.uniform(0, 1, FAITHFUL.situation.size)
+        situation = rng.uniform(0, 1, config.situation.size)
         agent.network.add_exemplar(situation, number % categories)
     return agent
 
 
 def decision_times(
-    room: str, repeats: int = 300, exemplars: int = EXEMPLARS
+    room: str,
+    robot: str = DEFAULT_ROBOT,
+    config: ReactivePlannerConfig = FAITHFUL,
+    repeats: int = 300,
+    exemplars: int = EXEMPLARS,
 ) -> tuple[float, float]:
     """Return the times of a reaction (perception to action) and of a planning, medians [s]."""
-    with nomad_mj.load("path_finding", room=room, task_kwargs={"random": 0}) as env:
-        agent = _filled_agent(env.scene, exemplars)
+    with nomad_mj.load("path_finding", room, robot, task_kwargs={"random": 0}) as env:
+        agent = _filled_agent(env.scene, config, exemplars)
         observation = env.reset(start=0).observation
-        layout, config = env.scene.robot.layout, agent.config
+        layout = env.scene.robot.layout
         percept = percept_of(observation, layout, config.situation)
         agent.network.situation[0] = percept.situation  # so that something matches
         grid = config.situation.grid

@@ -1,7 +1,8 @@
 """What is said of one number over many runs: quartiles, and the interquartile mean with bounds.
 
 The interquartile mean (IQM) is the mean of the middle half: a lucky or an unlucky run does not move
-it, and it needs fewer runs than the median to be known as well (Agarwal et al. 2021).
+it, and it needs fewer runs than the median to be known as well (Agarwal et al. 2021). Of less than
+four runs nothing is cut: it is their mean, and the interval too narrow.
 """
 
 from collections.abc import Sequence

@@ -57,7 +57,10 @@ def strata(
 
 def make_table(experiment: Experiment, results: Sequence[Result]) -> TextTable:
     """Return the table of an experiment; a cell is empty where no run has the number."""
-    rows = [(row.label, row.paper, *_cells(row, results)) for row in experiment.table]
+    cases = {result.run.case for result in results}
+    # Cases that make no sense with a robot or in a room are not run there.
+    wanted = [row for row in experiment.table if not (row.case and cases) or row.case in cases]
+    rows = [(row.label, row.paper, *_cells(row, results)) for row in wanted]
     return TextTable(f"{experiment.name}: {experiment.title}", HEADINGS, tuple(rows))
 
 

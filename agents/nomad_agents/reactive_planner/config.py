@@ -26,7 +26,7 @@ class PlannerConfig:
     k_alpha : float
         Half the angle around the goal's direction in which cells repel [rad].
     occupied : float
-        Above this probability a cell bars the way; those that no cone sees do not.
+        Above this probability a cell bars the way; those that no cone sees do not. Above 1: none.
     margin : float
         The planned way keeps this much off the centres of such cells [m]: half a cell, and the
         security distance, nearer than which a move is stopped.
@@ -46,7 +46,7 @@ class PlannerConfig:
             k_rep=(0.0, MOST),
             k_clear=(TINY, MOST),
             k_alpha=(0.0, math.pi),
-            occupied=(0.0, 1.0),
+            occupied=(0.0, MOST),
             margin=(0.0, MOST),
         )
 

@@ -6,13 +6,14 @@ A new one is a class in a file of its own here, and a line below.
 from nomad_agents.experiments.experiment import Experiment
 from nomad_agents.experiments.paper.ablations import Ablations
 from nomad_agents.experiments.paper.actions import Actions
+from nomad_agents.experiments.paper.adapting import Adapting
 from nomad_agents.experiments.paper.concave import Concave
 from nomad_agents.experiments.paper.intensity import NoIntensity
 from nomad_agents.experiments.paper.learning import Learning
 from nomad_agents.experiments.paper.moving import GoalMoves, ObstaclesMove
 from nomad_agents.experiments.paper.noise import Noise
 from nomad_agents.experiments.paper.odometry import WrongOdometry
-from nomad_agents.experiments.paper.places import Adapting, OtherPlaces
+from nomad_agents.experiments.paper.places import OtherPlaces
 from nomad_agents.experiments.paper.robots import OtherRobots
 from nomad_agents.experiments.paper.timing import Timing
 

@@ -20,8 +20,10 @@ from nomad_agents.experiments.experiment import (
 from nomad_agents.experiments.figures import lattice
 from nomad_agents.experiments.learnt import acting_agent, trained_agent
 from nomad_agents.experiments.measures import judge_actions
-from nomad_agents.experiments.pictures import LATTICE, action_map
+from nomad_agents.experiments.pictures import LATTICE, action_map, spread_starts
 from nomad_agents.experiments.runs import Result, Run
+
+_SHOWN = 4
 
 
 class Actions(Experiment):
@@ -71,8 +73,9 @@ class Actions(Experiment):
         return Verdict("holds in part" if any(claims) else "does not hold", reason)
 
     def showcase(self, study: Study, folder: Path) -> Showcase:
-        """Show the trained robot from four other starts."""
+        """Show the trained robot from other starts than those of fig6, if there are any."""
         run = self.runs(study)[0]
         agent, _ = trained_agent(run, folder)
         env = nomad_mj.load("path_finding", room=run.room, robot=run.robot)
-        return Showcase(env, agent, [3, 9, 18, 33][: len(env.scene.arena.starts)])
+        starts = spread_starts(env, 2 * _SHOWN)
+        return Showcase(env, agent, starts[_SHOWN:] or starts)

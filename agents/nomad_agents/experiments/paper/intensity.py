@@ -21,7 +21,7 @@ from nomad_agents.experiments.experiment import (
 )
 from nomad_agents.experiments.learnt import acting_agent, kept_agent, new_learner
 from nomad_agents.experiments.measures import DECISIONS, assess, episode_rows
-from nomad_agents.experiments.pictures import spread_out, way
+from nomad_agents.experiments.pictures import spread_starts, way
 from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.registry import find_config
 from nomad_agents.training import TrainingConfig
@@ -38,7 +38,7 @@ def _open(run: Run) -> PathFinding:
 
 def _starts(env: PathFinding) -> tuple[int, ...]:
     """Return the numbers of ten of the room's starts that lie far from each other."""
-    return tuple(spread_out(env.scene.arena.starts[:, :2], STARTS))
+    return tuple(spread_starts(env, STARTS))
 
 
 class NoIntensity(Experiment):

@@ -20,7 +20,7 @@ from nomad_agents.experiments.experiment import (
 )
 from nomad_agents.experiments.learnt import acting_agent, trained_agent
 from nomad_agents.experiments.measures import DECISIONS, assess, episode_rows
-from nomad_agents.experiments.pictures import spread_out, way
+from nomad_agents.experiments.pictures import spread_starts, way
 from nomad_agents.experiments.runs import Result, Run
 
 UNSEEN = 200
@@ -72,8 +72,7 @@ class Learning(Experiment):
             result.row |= row
             result.episodes = episode_rows(trials)
             if run.seed == 0:
-                places = env.scene.arena.starts
-                starts = places[spread_out(places[:, :2], _SHOWN)]
+                starts = env.scene.arena.starts[spread_starts(env, _SHOWN)]
                 shown = evaluate(env, agent, starts, run.seed, DECISIONS)
                 result.pictures["ways"] = [way(trial) for trial in shown]
         return result
@@ -97,5 +96,4 @@ class Learning(Experiment):
         run = self.runs(study)[0]
         agent, _ = trained_agent(run, folder)
         env = nomad_mj.load("path_finding", room=run.room, robot=run.robot)
-        places = env.scene.arena.starts
-        return Showcase(env, agent, places[spread_out(places[:, :2], 4)].tolist())
+        return Showcase(env, agent, spread_starts(env, 4))

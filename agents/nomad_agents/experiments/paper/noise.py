@@ -25,20 +25,22 @@ from nomad_agents.experiments.learnt import (
     trained_agent,
 )
 from nomad_agents.experiments.measures import assess, episode_rows
+from nomad_agents.experiments.pictures import spread_starts
 from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.registry import find_config
 from nomad_agents.training import TrainingConfig
 from nomad_mj.envs import PathFinding
+from nomad_mj.scene import build_scene
 from nomad_mj.tasks import RangeNoise
 
-_PAPER = "±15 %"
+_PAPER, _ECHOES = "±15 %", "lost echoes"
 NOISES = {
     "none": RangeNoise("none", 0.0),
     "±5 %": RangeNoise(level=0.05),
     _PAPER: RangeNoise(level=0.15),
     "±30 %": RangeNoise(level=0.30),
     "Gaussian 15 %": RangeNoise("gaussian", 0.15),
-    "lost echoes": RangeNoise(level=0.15, grazing=math.radians(30)),
+    _ECHOES: RangeNoise(level=0.15, grazing=math.radians(30)),
 }
 _MOST_PASSES = 6
 
@@ -68,8 +70,11 @@ class Noise(Experiment):
     )
 
     def runs(self, study: Study) -> list[Run]:
-        """Return a run for each kind of noise, agent and seed."""
-        return self.plan_runs(study, list(NOISES), (STRAIGHT, PLANNER), costly=("lost echoes",))
+        """Return a run for each kind of noise, agent and seed; echoes are those of a sonar."""
+        rings = build_scene(study.room, study.robot).robot.layout.rings
+        has_sonar = "sonar" in [ring.name for ring in rings]
+        cases = [case for case in NOISES if has_sonar or case != _ECHOES]
+        return self.plan_runs(study, cases, (STRAIGHT, PLANNER), costly=(_ECHOES,))
 
     def work(self, run: Run, folder: Path) -> Result:
         """Learn the room with this noise, then drive with it."""
@@ -106,4 +111,6 @@ class Noise(Experiment):
         """Show the most noise."""
         case = "±30 %"
         run = Run(self.name, case, LEARNER, study.config, study.room, study.robot, 0)
-        return Showcase(_open(run), kept_agent(run, folder), [0, 1, 2], subtitle=f"noise {case}")
+        env = _open(run)
+        starts = spread_starts(env, 3)
+        return Showcase(env, kept_agent(run, folder), starts, subtitle=f"noise {case}")

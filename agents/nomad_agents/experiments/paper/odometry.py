@@ -20,7 +20,12 @@ from nomad_agents.experiments.experiment import (
 from nomad_agents.experiments.figures import lattice
 from nomad_agents.experiments.learnt import acting_agent, trained_agent
 from nomad_agents.experiments.measures import assess, episode_rows, judge_actions
-from nomad_agents.experiments.pictures import LATTICE, action_map, share_alike
+from nomad_agents.experiments.pictures import (
+    LATTICE,
+    action_map,
+    share_alike,
+    spread_starts,
+)
 from nomad_agents.experiments.runs import Result, Run
 from nomad_mj.envs import PathFinding
 from nomad_mj.tasks import OdometryNoise
@@ -84,6 +89,8 @@ class WrongOdometry(Experiment):
             row = judge_actions(exact, actions)
             row["alike"] = share_alike(actions, action_map(exact, agent, places, run.seed), _ALIKE)
             metrics, trials = assess(wrong, agent, run.seed, decisions=_DECISIONS)
+        if run.agent != LEARNER:
+            del row["known"], row["known_suitable"]  # they know no situations
         result = Result(run, row | metrics | {"level": error}, episode_rows(trials))
         if run.seed == 0:
             result.pictures["actions"] = actions
@@ -106,4 +113,4 @@ class WrongOdometry(Experiment):
         run = Run(self.name, "2 m", LEARNER, study.config, study.room, study.robot, 0)
         agent, _ = trained_agent(run, folder)
         env = _open(run, ERRORS["2 m"])
-        return Showcase(env, agent, [0, 1], subtitle="odometry wrong by up to 2 m")
+        return Showcase(env, agent, spread_starts(env, 2), subtitle="odometry wrong by up to 2 m")

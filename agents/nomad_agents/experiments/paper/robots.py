@@ -19,7 +19,7 @@ from nomad_agents.experiments.experiment import (
 )
 from nomad_agents.experiments.learnt import acting_agent, kept_agent, new_learner
 from nomad_agents.experiments.measures import assess, episode_rows
-from nomad_agents.experiments.pictures import way
+from nomad_agents.experiments.pictures import spread_starts, way
 from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.registry import find_config
 from nomad_agents.training import TrainingConfig
@@ -93,4 +93,4 @@ class OtherRobots(Experiment):
         robot, room = CASES[case]
         run = Run(self.name, case, LEARNER, study.config, room, robot, 0)
         env = nomad_mj.load("path_finding", room=run.room, robot=run.robot)
-        return Showcase(env, kept_agent(run, folder), [0, 1, 2], subtitle=case)
+        return Showcase(env, kept_agent(run, folder), spread_starts(env, 3), subtitle=case)

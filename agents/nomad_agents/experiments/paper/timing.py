@@ -15,8 +15,10 @@ from nomad_agents.experiments.experiment import (
     column,
 )
 from nomad_agents.experiments.learnt import trained_agent
+from nomad_agents.experiments.pictures import spread_starts
 from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.experiments.speed import decision_times
+from nomad_agents.registry import find_config
 
 EXEMPLARS = (10, 30, 100, 300, 1000, 3000)
 PAPER_REACTION_S, PAPER_PLANNING_S = 0.04, 1.6
@@ -30,6 +32,7 @@ class Timing(Experiment):
     title = "Time of a decision"
     claim = "A reaction takes 0.04 s, a planning 1.6 s, on a SparcStation 2."
     source = "section 4"
+    needs_trained, shows_trained = False, True
     table = (
         *(
             TableRow(f"reaction with {n} exemplars, ms", f"reaction_{n}_ms",
@@ -53,7 +56,9 @@ class Timing(Experiment):
         reactions: list[list[float]] = []
         plannings: list[list[float]] = []
         for count in EXEMPLARS:
-            reaction, planning = decision_times(run.room, exemplars=count)
+            reaction, planning = decision_times(
+                run.room, run.robot, find_config(run.config), exemplars=count
+            )
             reactions.append([count, reaction])
             plannings.append([count, planning])
             result.row[f"reaction_{count}_ms"] = 1000 * reaction
@@ -77,4 +82,5 @@ class Timing(Experiment):
         """Show the agent whose decisions are timed."""
         run = self.runs(study)[0]
         agent, _ = trained_agent(run, folder)
-        return Showcase(nomad_mj.load("path_finding", room=run.room, robot=run.robot), agent, [4])
+        env = nomad_mj.load("path_finding", room=run.room, robot=run.robot)
+        return Showcase(env, agent, spread_starts(env, 1))

@@ -46,6 +46,7 @@ def write_report(
     facts: Sequence[tuple[str, str]] = (),
     *,
     seeds: int = 0,
+    introduced: bool = True,
 ) -> None:
     """Write the report, whole or not at all; the same sections give the same bits.
 
@@ -59,6 +60,8 @@ def write_report(
         What is said at the end of how all was made, such as `provenance`.
     seeds : int
         Over how many seeds the numbers are; not said if 0.
+    introduced : bool
+        Whether the page begins with the paper's room and robot; numbers of others need no such.
 
     Raises
     ------
@@ -71,7 +74,7 @@ def write_report(
     ]
     counts = {mark: sum(part.mark == mark for part in parts) for mark in _VERDICTS.values()}
     text = find_template("page.html.jinja").render(
-        parts=parts, facts=facts, seeds=seeds, counts=counts
+        parts=parts, facts=facts, seeds=seeds, counts=counts, introduced=introduced
     )
     write_atomically(path, lambda file: file.write(text.encode()))
 
