@@ -130,6 +130,8 @@ set_up() {
     make_venv
   elif ! runs; then
     die "the .venv here does not run and was not made by make: move it away"
+  elif ! right_python; then
+    die "the .venv here is not of $PYTHON and was not made by make: move it away"
   fi
   version=$(version_of "$venv/bin/python")
   if ! supported "$version"; then refuse "$venv/bin/python" "$version"; fi

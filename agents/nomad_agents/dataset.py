@@ -30,13 +30,20 @@ def require_new(root: Path, dataset_id: str) -> None:
     ConfigError
         An id that Minari would not take.
     OutputError
-        There is such a dataset.
+        There is such a dataset, or none can be written there.
     """
     if not _ID.fullmatch(dataset_id):
         raise ConfigError(
             f"dataset {dataset_id!r}: must be NAME-v0 or FOLDER/NAME-v0, of letters, digits, _, -"
         )
-    if (root / dataset_id).exists():
+    try:
+        there = (root / dataset_id).exists()
+        root.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=root):
+            pass
+    except OSError as error:
+        raise OutputError(f"cannot write datasets to {str(root)!r}: {error.strerror}") from None
+    if there:
         raise OutputError(f"dataset {dataset_id!r} exists in {str(root)!r}; choose another version")
 
 

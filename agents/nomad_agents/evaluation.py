@@ -1,5 +1,6 @@
 """Evaluation: a greedy agent on starts it may never have seen, in the field's metrics."""
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -75,7 +76,7 @@ def read_starts(path: Path) -> FloatArray:
     Raises
     ------
     StartError
-        No such file, or a line that is neither.
+        No such file, or a line that is neither; a heading beyond a turn, as degrees are.
     """
     try:
         lines = path.expanduser().read_text(encoding="utf-8-sig").splitlines()
@@ -96,6 +97,11 @@ def read_starts(path: Path) -> FloatArray:
         if len(values) not in (2, 3) or not np.isfinite(values).all():
             raise StartError(
                 f"starts file {str(path)!r}, line {number}: {text[:40]!r} is not x,y or x,y,heading"
+            )
+        if len(values) == 3 and abs(values[2]) > 2 * math.pi:
+            raise StartError(
+                f"starts file {str(path)!r}, line {number}: heading {values[2]:g} is no angle in "
+                "radians"
             )
         starts.append([*values, 0.0][:3])
     if not starts:

@@ -86,7 +86,7 @@ class OdometryNoise:
 
     def __post_init__(self) -> None:
         for name in ("distance", "heading", "position"):
-            if not getattr(self, name) >= 0:
+            if not 0 <= getattr(self, name) < math.inf:
                 raise ConfigError(f"odometry noise {name} {getattr(self, name)}: must be >= 0")
         for name in ("heading_per_metre", "heading_per_second"):
             if not math.isfinite(getattr(self, name)):

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import fields
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -260,6 +261,49 @@ def test_own_robots_and_rooms_by_path(
     assert said.code == 0 and json.loads(said.out)["episodes"] == 2
     told = refused(run("evaluate", "--room", room, "--agent", path, "--starts", 1))
     assert "is for other sensors: 8 infrared to 1.5 m, radius 0.2 m; this robot has 16" in told
+
+
+def test_a_version_is_told(run: Run) -> None:
+    assert run("--version") == Said(0, f"nomad-mj {version('nomad-mj')}\n", "")
+
+
+def test_names_that_a_terminal_cannot_show_do_no_harm(tmp_path: Path) -> None:
+    (tmp_path / "zimmer-\u00fc.yaml").write_text("size: [6, 4]\n", encoding="utf-8")
+    words = ["room", "zimmer-\u00fc.yaml", "-o", "zimmer-\u00fc.xml"]
+    ended = subprocess.run(
+        [sys.executable, "-m", "nomad_agents.cli.main", *words],
+        capture_output=True,
+        check=False,
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "1"},
+    )
+    assert (ended.returncode, ended.stderr) == (0, b"")
+    assert ended.stdout.startswith(b"zimmer-\\xfc.xml: 6 x 4 m")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ("bench --soak-hours 3", "--soak-hours: only with --soak"),
+        ("bench --soak --soak-hours inf", "hours inf: must be finite"),
+        ("sweep agent=straight --metric spl room=clutter", "'room=clutter' follows --metric"),
+        ("sweep rom=x --only-read", "--only-read shows all there is in --out"),
+        ("sweep --only-read --out ~nobody-there/x", "home directory"),
+        ("sweep --grid ~nobody-there/x.yaml", "home directory"),
+        ("sweep agent=straight --starts \u00b2 --seeds 1", "starts file '\u00b2' cannot be read"),
+        ("reproduce fig6 --out r.html", "out 'r.html': must be a folder"),
+        ("evaluate --out a.gif", "this writes .csv; give such a file or a folder"),
+        ("train --out a.NPZ", "this writes .npz; give such a file or a folder"),
+        ("check pioneer --no-drve", "did you mean --no-drive?"),
+        ("room maze --starts abc", "--starts 'abc': must be a whole number"),
+        ("record --width 641", "picture 641 x 480: its width must be an even number"),
+    ],
+)
+def test_options_that_would_be_ignored_or_fail_late_are_refused(
+    run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, arguments: str, told: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert told in refused(run(*arguments.split()))
 
 
 def test_an_interruption_exits_130(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -158,8 +158,30 @@ def test_a_corrupt_checkpoint_is_not_resumed_nor_overwritten(
     assert path.read_bytes() == b"not a checkpoint"
 
 
-def test_without_resume_training_begins_anew(small_room: Path, tmp_path: Path) -> None:
+def test_what_was_learnt_is_not_lost_to_the_same_command(
+    whole: Path, small_room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = whole.read_bytes()
+    arguments = ["train", "--room", str(small_room), "--out", str(whole)]
+    for more, told in (([], "is there already: --resume goes on"), (["--agent", "td3"], "already")):
+        assert main([*arguments, *more]) == 2
+        said = capsys.readouterr().err
+        assert told in said and "--overwrite" in said and said.count("\n") == 1
+    assert main([*arguments, "--resume", "--overwrite"]) == 2
+    assert whole.read_bytes() == before
+
+
+def test_a_checkpoint_to_go_on_from_that_is_not_there_is_told_of(
+    small_room: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["train", "--room", str(small_room), "--out", str(tmp_path / "a.npz"), "--resume"]
+    assert main([*arguments, "--max-decisions", "1"]) == 0
+    assert "a.npz: training begins anew" in capsys.readouterr().out
+
+
+def test_to_overwrite_is_to_begin_anew(small_room: Path, tmp_path: Path) -> None:
     arguments = ["train", "--room", str(small_room), "--out", str(tmp_path / "a.npz")]
+    arguments.append("--overwrite")
     made: list[int] = []
     for decisions in (30, 1):
         assert main([*arguments, "--max-decisions", str(decisions)]) == 0

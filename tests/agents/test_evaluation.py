@@ -207,6 +207,13 @@ def test_a_malformed_line_is_named_with_its_number(tmp_path: Path, line: str) ->
     assert len(str(caught.value)) < len(str(path)) + 120 and "\n" not in str(caught.value)
 
 
+def test_headings_are_in_radians(tmp_path: Path) -> None:
+    path = tmp_path / "starts.csv"
+    path.write_text("1,2,1.57\n8,2.5,90\n")
+    with pytest.raises(StartError, match=r"line 2: heading 90 is no angle in radians$"):
+        read_starts(path)
+
+
 def test_files_that_hold_no_starts(tmp_path: Path) -> None:
     path = tmp_path / "starts.csv"
     with pytest.raises(StartError, match=r"cannot be read: No such file or directory$"):

@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import pytest
@@ -77,6 +78,21 @@ def test_another_version_or_configuration_is_done_again(tmp_path: Path) -> None:
         assert stored_result(run, tmp_path) is None
         do_runs([run], draw, tmp_path, 1, lambda _: None)
         assert stored_result(run, tmp_path) is not None
+
+
+def test_results_can_be_read_where_a_package_is_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = runs(1)[0]
+    do_runs([run], draw, tmp_path, 1, lambda _: None)
+
+    def missing(name: str) -> str:
+        if name == "mujoco":
+            raise PackageNotFoundError(name)
+        return version(name)
+
+    monkeypatch.setattr(module, "version", missing)
+    assert stored_result(run, tmp_path) is not None
 
 
 @given(content=st.binary(max_size=60) | st.sampled_from([b"{}", b'{"key": 1}', b"[]", b"null"]))

@@ -116,6 +116,7 @@ def test_the_goal_and_what_moves_reach_the_task() -> None:
         ({"crosstalk": 1.5}, "crosstalk probability 1.5: must be in [0, 1]"),
         ({"dropout": math.nan}, "sonar dropout nan: must be in [0, 1]"),
         ({"sticky_bumpers": -1.0}, "bumper noise hold -1.0: must be 0 s or more"),
+        ({"odometry_error": math.inf}, "odometry noise position inf: must be >= 0"),
         ({"heading_drift": math.inf}, "odometry noise heading_per_metre inf: must be finite"),
         ({"goal": "8"}, "goal '8': must be X,Y in metres, such as 8,2.5"),
         ({"goal": "8,2,1"}, "goal '8,2,1': must be X,Y in metres"),

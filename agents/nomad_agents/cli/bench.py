@@ -1,6 +1,6 @@
 """``nomad-mj bench``."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 from rich.progress import Progress
@@ -67,7 +67,12 @@ class Bench:
 
     def run(self) -> int:
         """Measure; return the exit code."""
-        return self._soak() if self.soak else self._speed()
+        if self.soak:
+            return self._soak()
+        for each in fields(self):
+            if each.name.startswith("soak_") and getattr(self, each.name) != each.default:
+                raise ConfigError(f"--{each.name.replace('_', '-')}: only with --soak")
+        return self._speed()
 
     def _speed(self) -> int:
         screen = console(json_wanted=self.json)

@@ -23,6 +23,7 @@ from nomad_agents.checks import (
 )
 from nomad_agents.cli.common import console, print_json
 from nomad_agents.experiments.figures import draw_starts
+from nomad_agents.paths import expanded
 from nomad_mj.assets import find_robot, find_room, list_robots, list_rooms
 from nomad_mj.errors import ModelError, OutputError
 from nomad_mj.guard import check_size
@@ -42,21 +43,22 @@ class Check:
     """Robot that a room is checked for."""
     out: Annotated[str, tyro.conf.arg(aliases=["-o"])] = "renders"
     """Folder for the picture."""
-    drive: bool = True
-    """Drive the test patterns."""
+    no_drive: bool = False
+    """Drive no test patterns."""
     json: bool = False
     """Print one line of JSON on standard output."""
 
     def run(self) -> int:
         """Print what was found; return 0, or 1 if something should be better."""
+        room = is_room(self.file)
         out = _folder(self.out)
         screen = console(json_wanted=self.json)
-        if is_room(self.file):
+        if room:
             return self._room(screen, out)
         scene = build_scene(_EMPTY, self.file)
         path = out / f"check_{scene.robot.name}"
         faults = find_faults(scene)
-        drifts = drive_patterns(self.file) if self.drive else []
+        drifts = [] if self.no_drive else drive_patterns(self.file)
         faults += find_drift_faults(scene, drifts) if drifts else []
         draw_robot_card(scene, path)
         for table in (robot_table(scene, find_robot(self.file)), sensor_table(scene)):
@@ -87,7 +89,7 @@ class Check:
 
 
 def _folder(out: str) -> Path:
-    folder = Path(out)
+    folder = expanded(out)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

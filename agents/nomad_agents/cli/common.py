@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import signal
 import sys
 from collections.abc import Generator, Mapping
@@ -11,9 +12,10 @@ from typing import Any, cast
 
 from rich.console import Console
 
+from nomad_agents.paths import expanded
 from nomad_mj.errors import OutputError
 
-SUFFIXES = {".npz", ".mp4", ".csv", ".html"}
+_SUFFIX = re.compile(r"\.[A-Za-z][A-Za-z0-9]{1,4}")  # what looks like that of a file
 
 
 def console(*, json_wanted: bool) -> Console:
@@ -40,20 +42,18 @@ def output_file(out: str, default_name: str, suffix: str) -> Path:
     OutputError
         A name with another suffix, or a place that cannot be written.
     """
-    path = Path(out)
-    if path.suffix in SUFFIXES and path.suffix != suffix:
-        raise OutputError(f"--out {out!r}: this writes {suffix}; give such a file or a folder")
+    path = expanded(out)
     try:
-        path = path.expanduser()
+        if path.suffix != suffix and _SUFFIX.fullmatch(path.suffix) and not path.is_dir():
+            raise OutputError(f"--out {out!r}: this writes {suffix}; give such a file or a folder")
         if path.suffix != suffix or path.is_dir():
             path = path / f"{default_name}{suffix}"
         path.parent.mkdir(parents=True, exist_ok=True)
         probe = path.parent / f".{path.name}.writable"
         probe.touch()
         probe.unlink()
-    except (OSError, RuntimeError) as error:  # RuntimeError: a home that there is not
-        reason = getattr(error, "strerror", None) or error
-        raise OutputError(f"cannot write {str(path)!r}: {reason}") from None
+    except OSError as error:
+        raise OutputError(f"cannot write {str(path)!r}: {error.strerror or error}") from None
     return path
 
 

@@ -42,7 +42,8 @@ class Evaluate(TaskOptions):
     config: str = "faithful"
     """Parameters of an agent given by name, faithful or tuned; a checkpoint has its own."""
     starts: str = "200"
-    """Number of unseen starts, drawn from --seed, or a file of lines x,y[,heading]."""
+    """Number of unseen starts, drawn from --seed, or a file of lines x,y[,heading], metres and
+    radians."""
     seed: int = 0
     """Of the starts and of the sensors' noise."""
     max_decisions: int = 100
@@ -58,7 +59,7 @@ class Evaluate(TaskOptions):
         screen = console(json_wanted=self.json)
         with self.path_finding() as env, interruptible():
             agent = find_agent(self.agent, env.scene.robot.layout, find_config(self.config))
-            name = f"{env.scene.arena.name}_{agent.name}_evaluation"
+            name = f"{env.scene.arena.name}_{env.scene.robot.name}_{agent.name}_evaluation"
             path = output_file(self.out, name, ".csv") if self.out else None
             starts = choose_starts(env, self.starts, self.seed)
             trials = run_evaluation(env, agent, starts, self.seed, self.max_decisions, screen)

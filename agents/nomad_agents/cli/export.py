@@ -27,7 +27,8 @@ class Export(TaskOptions):
     config: str = "faithful"
     """Parameters of an agent given by name, faithful or tuned; a checkpoint has its own."""
     starts: str = "20"
-    """Number of episodes, from starts drawn from --seed, or a file of lines x,y[,heading]."""
+    """Number of episodes, from starts drawn from --seed, or a file of lines x,y[,heading],
+    metres and radians."""
     seed: int = 0
     """Of the starts and of the sensors' noise."""
     max_decisions: int = 100

@@ -1,8 +1,11 @@
 """Entry point of ``nomad-mj``."""
 
+import errno
+import io
 import os
 import sys
 from collections.abc import Sequence
+from importlib.metadata import version
 
 from nomad_agents.cli.common import fail
 from nomad_agents.cli.parsing import parse
@@ -29,6 +32,12 @@ COMMANDS: dict[str, str] = {
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; return 0, or 2 for a user's mistake, or 130 if interrupted."""
     typed = sys.argv[1:] if arguments is None else arguments
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # of a terminal that lacks the letters
+            stream.reconfigure(errors="backslashreplace")
+    if list(typed) in (["--version"], ["-V"]):
+        print(f"nomad-mj {version('nomad-mj')}")
+        return 0
     try:
         command = parse(COMMANDS, "A simulated Nomad 200 learns to find its goal.", typed)
         return command.run()
@@ -40,6 +49,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of our output has gone
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
+    except OSError as error:
+        if error.errno != errno.ENOSPC:
+            raise
+        return fail(f"cannot write: {error.strerror}")
 
 
 if __name__ == "__main__":

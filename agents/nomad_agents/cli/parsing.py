@@ -117,7 +117,7 @@ def _one_line(box: str) -> str:
     found = re.fullmatch(r"Error parsing (\S+): (.*)", said)
     if not found:
         return said
-    takes = re.search(rf"{re.escape(found[1])} ([A-Z]+)", " ".join(rest))
+    takes = re.search(rf"{re.escape(found[1])} (?:\{{None\}}\|)?([A-Z]+)", " ".join(rest))
     value = re.search(r": (['\"].*)", found[2])
     if not takes or takes[1] not in _NUMBERS or not value:
         return f"{found[1]}: {found[2]}"

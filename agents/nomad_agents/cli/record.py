@@ -10,6 +10,7 @@ from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.recording import record
 from nomad_agents.registry import find_agent, find_config
 from nomad_mj.tasks import Start
+from nomad_mj.video.layout import default_size
 
 
 @dataclass(frozen=True)
@@ -21,7 +22,8 @@ class Record(TaskOptions):
     config: str = "faithful"
     """Parameters of an agent given by name, faithful or tuned; a checkpoint has its own."""
     starts: str = "1"
-    """Number of episodes, from starts drawn from --seed, or a file of lines x,y[,heading]."""
+    """Number of episodes, from starts drawn from --seed, or a file of lines x,y[,heading],
+    metres and radians."""
     seed: int = 0
     """Of the starts and of the sensors' noise."""
     max_decisions: int = 100
@@ -37,7 +39,7 @@ class Record(TaskOptions):
     height: int = 0
     """Of a frame [pixels]; 0: what suits the view."""
     out: str = "renders"
-    """Video to write, .mp4, or a folder for it (ROOM_AGENT.mp4)."""
+    """Video to write, .mp4, or a folder for it (ROOM_ROBOT_AGENT.mp4)."""
     json: bool = False
     """Print one line of JSON last on standard output."""
 
@@ -47,7 +49,8 @@ class Record(TaskOptions):
         screen = console(json_wanted=self.json)
         with self.path_finding() as env, interruptible():
             agent = find_agent(self.agent, env.scene.robot.layout, find_config(self.config))
-            path = output_file(self.out, f"{env.scene.arena.name}_{agent.name}", ".mp4")
+            name = f"{env.scene.arena.name}_{env.scene.robot.name}_{agent.name}"
+            path = output_file(self.out, name, ".mp4")
             places: Sequence[Start] = choose_starts(env, self.starts, self.seed).tolist()
             with screen.status(f"recording {len(places)} episode(s)"):
                 done = record(
@@ -59,7 +62,7 @@ class Record(TaskOptions):
                     view=self.view,
                     speed=self.speed,
                     fps=self.fps,
-                    size=(self.width, self.height) if self.width or self.height else None,
+                    size=self._size(),
                     max_decisions=self.max_decisions,
                 )
         reached = sum(episode.reached for episode in done.episodes)
@@ -79,3 +82,8 @@ class Record(TaskOptions):
                 }
             )
         return 0
+
+    def _size(self) -> tuple[int, int]:
+        """Return width and height of a frame [pixels]."""
+        width, height = default_size(self.view)
+        return self.width or width, self.height or height

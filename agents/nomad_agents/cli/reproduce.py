@@ -14,6 +14,7 @@ from nomad_agents.experiments.paper import EXPERIMENTS, EXTRA
 from nomad_agents.experiments.presentation import find, numbers, present
 from nomad_agents.experiments.reproduction import Results, count_runs, on_file, reproduce
 from nomad_agents.experiments.tables import as_rich
+from nomad_agents.paths import expanded
 from nomad_agents.registry import find_config
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
 from nomad_mj.errors import ConfigError, UnknownNameError
@@ -61,10 +62,12 @@ class Reproduce:
         build_scene(self.room, self.robot)  # whatever is wrong with them is said now, and once
         study = Study(self.config, self.room, self.robot, self.seeds)
         screen = console(json_wanted=self.json)
+        report = output_file(self.out, "report", ".html")
+        if report.name != "report.html" or expanded(self.out) == report:
+            raise ConfigError(f"out {self.out!r}: must be a folder")
         folder = output_file(
             str(Path(self.out, "reproduce", self.config, "runs")), "probe", ".csv"
         ).parent
-        report = output_file(self.out, "report", ".html")
         with interruptible():
             results = self._results(experiments, study, folder, screen)
             findings = find(experiments, results, study)

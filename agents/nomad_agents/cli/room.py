@@ -10,6 +10,7 @@ import tyro
 from nomad_agents.checkpoint import write_atomically
 from nomad_agents.cli.common import console, print_json
 from nomad_agents.cli.parsing import parse_place
+from nomad_agents.paths import expanded
 from nomad_mj.errors import ConfigError
 from nomad_mj.rooms import (
     Room,
@@ -57,7 +58,7 @@ class MakeRoom:
 
     def run(self) -> int:
         """Write the room; return the exit code."""
-        path = Path(self.out)
+        path = expanded(self.out)
         if path.suffix != ".xml":
             raise ConfigError(f"--out {self.out!r}: this writes .xml; give such a file")
         room = self._room()

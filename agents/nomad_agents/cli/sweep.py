@@ -17,6 +17,7 @@ from nomad_agents.experiments.pool import do_in_processes
 from nomad_agents.experiments.runs import Row
 from nomad_agents.experiments.statistics import spread
 from nomad_agents.experiments.tables import as_markdown, as_rich
+from nomad_agents.paths import expanded
 from nomad_agents.sweeps.grid import SweepRun, describe, read_grid
 from nomad_agents.sweeps.ray_pool import do_on_ray, has_ray
 from nomad_agents.sweeps.store import TABLE, Store, locked, open_store, read_store
@@ -45,7 +46,8 @@ class Sweep:
     seeds: int = 5
     """Every combination is run with the seeds 0, 1, ..."""
     starts: str = "50"
-    """Number of unseen starts to evaluate from, or a file of lines x,y[,heading]."""
+    """Number of unseen starts to evaluate from, or a file of lines x,y[,heading], metres and
+    radians."""
     jobs: int = 2
     """Runs at once on this machine."""
     backend: Literal["auto", "ray", "processes"] = "auto"
@@ -57,18 +59,33 @@ class Sweep:
     out: str = "renders/sweep"
     """Folder for sweep.parquet, the table and the figures; one sweep a folder."""
     only_read: bool = False
-    """Run nothing: show what is on file in --out."""
+    """Run nothing: show all that is on file in --out, and draw it."""
     json: bool = False
     """Print one line of JSON last on standard output."""
 
     def run(self) -> int:
         """Run what is missing, then show the table and draw the figures."""
         screen = console(json_wanted=self.json)
-        folder = Path(self.out).expanduser()
+        folder = expanded(self.out)
+        self._check()
         with interruptible():
             store = self._read(folder) if self.only_read else self._sweep(folder, screen)
             self._show(store, folder, screen)
         return 0
+
+    def _check(self) -> None:
+        """Refuse what would be ignored, or be found out about after all the work."""
+        for name in self.metric:
+            if "=" in name:
+                raise ConfigError(f"sweep: {name!r} follows --metric: options come before it")
+        if self.only_read and (self.options or self.grid):
+            raise ConfigError(
+                "sweep: --only-read shows all there is in --out, and takes no options"
+            )
+        if self.address and self.jobs != Sweep.jobs:
+            raise ConfigError(
+                "sweep: --jobs is for this machine; the cluster of --address has its own"
+            )
 
     def _read(self, folder: Path) -> Store:
         store = read_store(folder)

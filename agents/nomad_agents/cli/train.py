@@ -19,11 +19,12 @@ from nomad_agents.deep.environment import make_env
 from nomad_agents.deep.extra import require_extra
 from nomad_agents.deep.training import require_budget
 from nomad_agents.experiments.digest import digests
+from nomad_agents.paths import expanded
 from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner
 from nomad_agents.registry import find_agent, find_config
 from nomad_agents.training import Training, TrainingConfig, train, training_report
 from nomad_mj.envs import PathFinding
-from nomad_mj.errors import ConfigError
+from nomad_mj.errors import ConfigError, OutputError
 
 _OF_REACTIVE_PLANNER = ("config", "max_passes", "max_decisions", "resume")
 _OF_DEEP_LEARNERS = ("observation", "decisions")
@@ -59,6 +60,8 @@ class Train(TaskOptions):
     learner with the observation in place of CONFIG)."""
     resume: bool = False
     """Go on from the checkpoint --out, if there is one, to the same bits."""
+    overwrite: bool = False
+    """Begin anew though --out is there: it is replaced."""
     json: bool = False
     """Print one line of JSON last on standard output."""
 
@@ -82,6 +85,7 @@ class Train(TaskOptions):
         with self.path_finding() as test, interruptible():
             name = self._name(test, self.observation)
             path = output_file(self.out, name, ".npz")
+            self._require_free(path)
             task, goal = self._task_kwargs(), self._goal_place()
             made = make_env(settings, self.observation, self.room, self.robot, task, goal)
             with closing(made) as env:
@@ -94,7 +98,7 @@ class Train(TaskOptions):
                     path,
                     screen,
                     self.conditions(),
-                    Path(self.tensorboard) / name if self.tensorboard else None,
+                    expanded(self.tensorboard) / path.stem if self.tensorboard else None,
                 )
         told = f"solved {report['solved']} of {report['starts']} starts"
         screen.print(f"{told} after {report['decisions']} decisions: {path}", soft_wrap=True)
@@ -110,10 +114,13 @@ class Train(TaskOptions):
         with self.path_finding() as env, interruptible():
             name = self._name(env, self.config)
             path = output_file(self.out, name, ".npz")
+            self._require_free(path)
             resume = self.resume and path.exists()
+            if self.resume and not resume:
+                screen.print(f"no checkpoint {path}: training begins anew", soft_wrap=True)
             agent, training = self._resume(env, path) if resume else (self._begin(env), Training())
             conditions = self.conditions() | {"files": digests(self.robot, self.room)}
-            with self._curves(name, resume=resume) as curves:
+            with self._curves(path.stem, resume=resume) as curves:
                 run_training(env, agent, settings, training, path, screen, conditions, curves)
             report = training_report(env, agent, training)
             screen.print(f"{_verdict(report, training)}: {path}", soft_wrap=True)
@@ -131,7 +138,18 @@ class Train(TaskOptions):
         """Return what writes the curves of a run, None where none are wanted."""
         if not self.tensorboard:
             return nullcontext()
-        return Curves(Path(self.tensorboard) / name, resume=resume)
+        return Curves(expanded(self.tensorboard) / name, resume=resume)
+
+    def _require_free(self, path: Path) -> None:
+        """Raise OutputError if what is there would be lost."""
+        if self.resume and self.overwrite:
+            raise ConfigError("--resume goes on, --overwrite begins anew: give one of them")
+        if path.exists() and not (self.resume or self.overwrite):
+            goes_on = "" if self.agent in LEARNERS else "--resume goes on from there, "
+            raise OutputError(
+                f"{str(path)!r} is there already: {goes_on}--overwrite replaces it; or choose "
+                "another --out"
+            )
 
     def _begin(self, env: PathFinding) -> ReactivePlanner:
         """Return the agent to train: a new one, or what a checkpoint has learnt elsewhere."""

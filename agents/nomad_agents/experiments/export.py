@@ -4,14 +4,13 @@ import csv
 import io
 from collections.abc import Sequence
 from dataclasses import asdict, fields
-from importlib.metadata import version
 from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
 from nomad_agents.checkpoint import write_atomically
-from nomad_agents.experiments.runs import PACKAGES, Result, Row, Run
+from nomad_agents.experiments.runs import PACKAGES, Result, Row, Run, version_of
 
 _RUN = tuple(field.name for field in fields(Run))
 
@@ -83,7 +82,7 @@ def _joined(identity: Row, numbers: Row) -> Row:
 
 
 def _versions(run: Run) -> Row:
-    return {name: version(name) for name in run.packages()}
+    return {name: version_of(name) for name in run.packages()}
 
 
 def _write(rows: Sequence[Row], first: Sequence[str], path: Path) -> None:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import asdict, dataclass, field
 from functools import partial
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -111,10 +111,18 @@ class Result:
     machine: Row = field(default_factory=Row)
 
 
+def version_of(package: str) -> str | None:
+    """Return the version of a package that is installed, None if it is not."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None
+
+
 def _key(run: Run) -> Row:
     """Return what a file must agree with to be this run's: no stale numbers of another version."""
     key = {**run.identity(), "edition": _EDITION}
-    key["packages"] = {name: version(name) for name in run.packages()}
+    key["packages"] = {name: version_of(name) for name in run.packages()}
     key["parameters"] = run.parameters()
     key["files"] = digests(run.robot, *run.rooms())
     return json.loads(json.dumps(key))
@@ -133,7 +141,11 @@ def stored_result(run: Run, folder: Path) -> Result | None:
         return None
     try:
         held = json.loads(path.read_text(encoding="utf-8"))
-        if held["key"] != _key(run):
+        key = _key(run)
+        for name, here in key["packages"].items():
+            if here is None:  # what is not installed here, whoever reads needs not
+                key["packages"][name] = held["key"]["packages"][name]
+        if held["key"] != key:
             return None
         return Result(run, **{name: held[name] for name in _CONTENTS})
     except (OSError, ValueError, KeyError, TypeError):

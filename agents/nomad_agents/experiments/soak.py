@@ -1,5 +1,6 @@
 """A long run in one process: it must neither grow nor make the engine warn."""
 
+import math
 import resource
 import sys
 from collections.abc import Callable
@@ -82,8 +83,10 @@ def soak(
     Raises
     ------
     ConfigError
-        Fewer than two episodes for each robot.
+        Fewer than two episodes for each robot, or a time without end.
     """
+    if not sim_hours < math.inf:
+        raise ConfigError(f"hours {sim_hours}: must be finite")
     episodes = round(resets / robots)
     if episodes < 2:  # the first fills the caches
         raise ConfigError(f"resets {resets}: must be {2 * robots} or more, two for each robot")

@@ -9,9 +9,9 @@ import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, NamedTuple
 
+from nomad_agents.paths import expanded
 from nomad_agents.sweeps.options import (
     AGENT,
     USUAL_AGENT,
@@ -152,7 +152,7 @@ def read_grid(words: Sequence[str], path: str, starts: str, seeds: int) -> Grid:
         raise ConfigError(f"seeds {seeds}: must be 1 or more")
     given: list[tuple[str, list[Any]]] = []
     if path:
-        held = read_yaml(Path(path).expanduser(), "grid")
+        held = read_yaml(expanded(path), "grid")
         given += [(str(k), v if isinstance(v, list) else [v]) for k, v in held.items()]
     given += [_split(word) for word in words]
     axes: dict[str, tuple[Value, ...]] = {}

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, NamedTuple, get_type_hints
 
 from nomad_agents.agent import Agent
@@ -19,6 +18,7 @@ from nomad_agents.learners import (
     ReactionLearner,
     Untaught,
 )
+from nomad_agents.paths import expanded
 from nomad_agents.reactive_planner import FAITHFUL, ReactivePlanner, ReactivePlannerConfig
 from nomad_agents.registry import AGENTS, SETTINGS, find_agent, find_config
 from nomad_agents.sweeps.options import (
@@ -101,7 +101,7 @@ class Stored(Learner):
 
     def parameters(self, variant: str) -> Any:
         """Return what tells the file from others."""
-        return digest(Path(self.name).expanduser())
+        return digest(expanded(self.name))
 
     def learn(self, lesson: Lesson) -> tuple[Agent, Row]:
         """Return it as it is; errors as of `find_agent`."""

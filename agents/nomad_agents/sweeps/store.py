@@ -146,6 +146,13 @@ def as_table(grid: Grid, rows: Mapping[SweepRun, Row]) -> Any:
     return pa.table(columns)
 
 
+def _is_there(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError as error:  # a folder that may not be entered
+        raise OutputError(f"cannot read {str(path)!r}: {error.strerror}") from None
+
+
 def read_store(folder: Path) -> Store | None:
     """Return what a folder holds, None if that is nothing.
 
@@ -155,8 +162,8 @@ def read_store(folder: Path) -> Store | None:
         A file of it is damaged or of something else.
     """
     path, journal = folder / TABLE, folder / _JOURNAL
-    if not path.exists():
-        if journal.exists() and journal.stat().st_size:
+    if not _is_there(path):
+        if _is_there(journal) and journal.stat().st_size:
             raise OutputError(
                 f"{str(journal)!r} holds results of a sweep whose {TABLE} is not there: put that "
                 "back, or remove both"

@@ -14,6 +14,7 @@ from nomad_agents.experiments.digest import digest
 from nomad_agents.experiments.measures import UNSEEN_SEED
 from nomad_agents.experiments.runs import PACKAGES, Row, Stopwatch, describe_machine
 from nomad_agents.learners import LEARNERS, Lesson
+from nomad_agents.paths import expanded
 from nomad_agents.registry import AGENTS, make_agent
 from nomad_agents.sweeps.grid import Cell, Grid, SweepRun, describe
 from nomad_agents.sweeps.options import AGENT, STARTS, USUAL_AGENT, Value
@@ -98,9 +99,11 @@ def _lesson(env: PathFinding, settings: Settings) -> Lesson:
 
 def _starts(env: PathFinding, starts: str) -> FloatArray:
     """Return the starts (n, 3): so many unseen ones, or those of a file."""
-    if starts.lstrip("+-").isdigit():
-        return draw_starts(env, int(starts), UNSEEN_SEED)
-    return read_starts(Path(starts))
+    try:
+        count = int(starts)
+    except ValueError:
+        return read_starts(Path(starts))
+    return draw_starts(env, count, UNSEEN_SEED)
 
 
 def check_grid(grid: Grid, tell: Callable[[str], object]) -> None:
@@ -154,7 +157,7 @@ def sources(grid: Grid) -> Row:
     robots = {f"robot {v}": find_robot(str(v)) for v in values.get("robot", (task.robot,))}
     own = [v for v in agents if v not in LEARNERS]
     own += [v for v in values.get(STARTS, ()) if not str(v).isdigit()]
-    files |= {str(v): Path(str(v)).expanduser() for v in own}
+    files |= {str(v): expanded(str(v)) for v in own}
     return {
         "packages": package_versions(agents),
         "files": {name: digest(path) for name, path in files.items() if path.is_file()}
