@@ -53,7 +53,7 @@ class Demo(TaskOptions):
     """Train in a room, the paper's by default, print the table, write video and figures."""
 
     config: str = "faithful"
-    """Parameters: faithful (the paper's) or tuned (better ones found since)."""
+    """Parameters: faithful (the paper's) or tuned (fewer virtual collisions in such rooms)."""
     seed: int = 0
     """Of all randomness."""
     starts: int = 100

@@ -37,7 +37,7 @@ class Reproduce:
     seeds: int = 20
     """Runs, with the seeds 0, 1, ...; at most 3 of each baseline, which learns nothing."""
     config: str = "faithful"
-    """Parameters: faithful (the paper's) or tuned (better ones found since)."""
+    """Parameters: faithful (the paper's) or tuned (fewer virtual collisions in such rooms)."""
     room: str = DEFAULT_ROOM
     """Name of a room, or an MJCF file; fig13 and parts of fig9 and fig10 have their own."""
     robot: str = DEFAULT_ROBOT

@@ -42,7 +42,7 @@ class Train(TaskOptions):
     """reactive_planner, or a checkpoint of it, .npz, to go on learning with what it knows; or a
     deep learner: sac, td3 or ppo."""
     config: str = "faithful"
-    """Parameters: faithful (the paper's) or tuned (better ones found since)."""
+    """Parameters: faithful (the paper's) or tuned (fewer virtual collisions in such rooms)."""
     observation: str = "situation"
     """What a deep learner is shown: situation (26 numbers) or ranges (all range readings)."""
     decisions: int = 10_000
