@@ -43,9 +43,10 @@ def choose_metrics(store: Store, names: Sequence[str]) -> list[str]:
     }
     for name in names:
         if name not in known:
+            there = ", ".join(known)
             raise ConfigError(
-                f"sweep: unknown metric {name!r}; there are: {', '.join(known)} (what was run is on "
-                "file: --only-read shows it)"
+                f"sweep: unknown metric {name!r}; there are: {there} (what was run is on file: "
+                "--only-read shows it)"
             )
     return list(dict.fromkeys(names)) or [name for name in USUAL if name in known]
 
