@@ -111,6 +111,11 @@ class Curves:
                 self._writer.add_scalar(tag, value, step)
 
 
+def has_curves(folder: Path) -> bool:
+    """Return whether there are curves of a run in its folder."""
+    return any(folder.glob(_FILES))
+
+
 @contextmanager
 def curves_folder(folder: Path, *, resume: bool) -> Generator[Path, None, None]:
     """Make the folder of a run's curves, for a writer to be opened in; see `Curves`."""

@@ -153,10 +153,13 @@ def train(
     while not training.done and training.passes <= config.max_passes:
         spent = config.max_decisions and training.decisions >= config.max_decisions
         if spent and not training.testing:
-            # Before `min_passes` a pass may end without a test.
-            if config.whole_tests or (training.tested and not training.next_start):
+            at_end = not training.next_start
+            if config.whole_tests or (training.tested and at_end):
                 break
-            training.testing, training.next_start = True, 0  # a last test, of what it knows now
+            # A last test, of what it knows now. Before `min_passes` a pass ends without one, and it
+            # is that pass's: the next has not begun.
+            training.passes -= at_end
+            training.testing, training.next_start = True, 0
         began = time.perf_counter()
         before = replace(training), agent.network.arrays(), agent.plannings
         try:

@@ -6,7 +6,7 @@ from PIL import ImageDraw
 
 from nomad_mj.types import FloatArray
 from nomad_mj.video.cards import Card, make_card, rounded, text_width, to_bytes, write
-from nomad_mj.video.layout import cell_pixels
+from nomad_mj.video.layout import inset_side
 from nomad_mj.video.palette import INK, MUTED, PAPER, RGB, blend
 
 _GRID: tuple[RGB, ...] = ((0.955, 0.962, 0.970), (0.69, 0.75, 0.82), (0.20, 0.30, 0.46))
@@ -102,7 +102,10 @@ def inset_card(
     unit : float
         Size of the picture (see `Layout`).
     """
-    picture = _map(grid, cell, radius, move, colour, cell_pixels(unit))
+    side = inset_side(unit)
+    picture = _map(grid, cell, radius, move, colour, max(round(side / len(grid)), 1))
+    if picture.width > side:  # of a grid with more cells than there are pixels
+        picture = picture.resize((side, side), Pillow.Resampling.BOX)
     pad = max(round(9 * unit), 2)
     size = max(round(_TITLE * unit), 6)
     while size > 6 and text_width("certainty gridNN", size) > picture.width:

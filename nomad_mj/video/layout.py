@@ -165,11 +165,11 @@ def _beside(view: str, width: int, height: int) -> Layout:
     return Layout((width, height), (Pane(view, box),), unit, (edge, edge), caption)
 
 
-def cell_pixels(unit: float) -> int:
-    """Return how many pixels a side of a grid cell takes."""
-    return max(round(6 * unit), 1)
+def inset_side(unit: float) -> int:
+    """Return how wide and high the grid in the inset is [px], of whatever number of cells."""
+    return _CELLS * max(round(6 * unit), 1)
 
 
 def inset_height(unit: float) -> int:
     """Return how high the inset is: the grid, its title and a margin around both."""
-    return _CELLS * cell_pixels(unit) + round(41 * unit)
+    return inset_side(unit) + round(41 * unit)

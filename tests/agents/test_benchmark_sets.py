@@ -120,6 +120,12 @@ def test_a_plan_is_every_agent_in_every_task_seed_by_seed(tmp_path: Path) -> Non
     ]
 
 
+def test_a_budget_from_which_nothing_is_learnt_is_refused_at_once(tmp_path: Path) -> None:
+    small = plan(agents=("planner", "ppo"), sets=tuple(room_sets(["hall"])), budget=300)
+    with pytest.raises(ConfigError, match="--budget 300, ppo: decisions 300: PPO learns nothing"):
+        plan_runs(small, tmp_path)
+
+
 def test_deep_learners_may_have_fewer_seeds(tmp_path: Path) -> None:
     runs = plan_runs(plan(agents=("straight", "sac"), sets=tuple(room_sets(["hall"]))), tmp_path)
     assert [(run.agent, run.seed) for run in runs] == [

@@ -263,6 +263,14 @@ def test_own_robots_and_rooms_by_path(
     assert "is for other sensors: 8 infrared to 1.5 m, radius 0.2 m; this robot has 16" in told
 
 
+@pytest.mark.parametrize("name", ["my.room", "agent.v2", "lr0.001", "results.csv/"])
+def test_a_folder_may_have_a_dot_in_its_name(run: Run, tmp_path: Path, name: str) -> None:
+    said = run("evaluate", "--agent", "straight", "--starts", 1, "--max-decisions", 1, "--out",
+               f"{tmp_path}/{name}")  # fmt: skip
+    assert said.code == 0
+    assert [path.suffix for path in (tmp_path / name).iterdir()] == [".csv"]
+
+
 def test_a_version_is_told(run: Run) -> None:
     assert run("--version") == Said(0, f"nomad-mj {version('nomad-mj')}\n", "")
 

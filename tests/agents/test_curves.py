@@ -90,9 +90,20 @@ def killing(
 
 def test_a_training_anew_begins_its_curves_anew(whole: tuple[Path, Read], small_room: Path) -> None:
     folder, curves = whole
-    assert run(small_room, folder) == 0
+    assert run(small_room, folder, "--overwrite") == 0
     assert curves_of(folder) == curves
     assert Train().tensorboard == ""
+
+
+def test_another_training_leaves_them_alone(
+    whole: tuple[Path, Read], small_room: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, curves = whole
+    for more in ((), ("--resume",)):  # there is no such checkpoint to go on from
+        assert run(small_room, folder, "--out", str(folder / "b.npz"), *more) == 2
+        told = capsys.readouterr().err
+        assert "holds the curves of a training already" in told and told.count("\n") == 1
+    assert not (folder / "b.npz").exists() and curves_of(folder) == curves
 
 
 def test_a_folder_that_cannot_be_written(

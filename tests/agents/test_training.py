@@ -153,6 +153,20 @@ def test_a_training_that_has_spent_its_decisions_is_asked_once_more_if_that_is_s
     assert training.solved == 0 and not training.done
 
 
+@pytest.mark.parametrize("spent_in", [2, 3])
+def test_the_last_test_of_a_first_pass_ends_no_training(
+    env: PathFinding, monkeypatch: pytest.MonkeyPatch, spent_in: int
+) -> None:
+    def episode(env: PathFinding, agent: ReactivePlanner, **given: Any) -> Episode:
+        return Episode(True, 10, 7, 0, 0, 0, 1.0, 1.0, 0.1)
+
+    monkeypatch.setattr(module, "run_episode", episode)
+    agent, training = new(env)
+    train(env, agent, TrainingConfig(max_decisions=10 * spent_in, whole_tests=False), training)
+    assert (training.solved, training.tested, training.done) == (3, 3, False)
+    assert training_report(env, agent, training)["passes"] == 1
+
+
 def test_short_tests_leave_learning_as_it_is(env: PathFinding, whole: Learnt) -> None:
     agent, training = new(env)
     train(env, agent, TrainingConfig(seed=1, whole_tests=False), training)

@@ -68,6 +68,8 @@ def plan_runs(plan: Plan, folder: Path) -> list[BenchmarkRun]:
         A name that stands for nothing, or a robot that does not fit into a room.
     """
     agents = dict.fromkeys(find_learner(spec) for spec in plan.agents)
+    for learner, _ in agents:
+        learner.check_budget(plan.budget)
     rooms = {case: write_room(case, folder) for each in plan.sets for case in each.cases}
     for name in (names := [Path(robot).stem for robot in dict.fromkeys(plan.robots)]):
         if names.count(name) > 1:

@@ -2,7 +2,6 @@
 
 import json
 import math
-import re
 import signal
 import sys
 from collections.abc import Generator, Mapping
@@ -15,7 +14,10 @@ from rich.console import Console
 from nomad_agents.paths import expanded
 from nomad_mj.errors import OutputError
 
-_SUFFIX = re.compile(r"\.[A-Za-z][A-Za-z0-9]{1,4}")  # what looks like that of a file
+_OF_FILES = (
+    *(".npz", ".npy", ".pkl", ".pt", ".zip", ".csv", ".json", ".parquet", ".html", ".md", ".txt"),
+    *(".xml", ".yaml", ".yml", ".mp4", ".avi", ".mov", ".gif", ".png", ".jpg", ".pdf"),
+)
 
 
 def console(*, json_wanted: bool) -> Console:
@@ -44,9 +46,11 @@ def output_file(out: str, default_name: str, suffix: str) -> Path:
     """
     path = expanded(out)
     try:
-        if path.suffix != suffix and _SUFFIX.fullmatch(path.suffix) and not path.is_dir():
+        is_folder = out.endswith("/") or path.is_dir()
+        other = path.suffix.lower() in _OF_FILES and path.suffix != suffix
+        if other and not is_folder:
             raise OutputError(f"--out {out!r}: this writes {suffix}; give such a file or a folder")
-        if path.suffix != suffix or path.is_dir():
+        if path.suffix != suffix or is_folder:
             path = path / f"{default_name}{suffix}"
         path.parent.mkdir(parents=True, exist_ok=True)
         probe = path.parent / f".{path.name}.writable"

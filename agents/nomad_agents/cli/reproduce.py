@@ -62,9 +62,9 @@ class Reproduce:
         build_scene(self.room, self.robot)  # whatever is wrong with them is said now, and once
         study = Study(self.config, self.room, self.robot, self.seeds)
         screen = console(json_wanted=self.json)
-        report = output_file(self.out, "report", ".html")
-        if report.name != "report.html" or expanded(self.out) == report:
+        if expanded(self.out).suffix == ".html" and not expanded(self.out).is_dir():
             raise ConfigError(f"out {self.out!r}: must be a folder")
+        report = output_file(self.out, "report", ".html")
         folder = output_file(
             str(Path(self.out, "reproduce", self.config, "runs")), "probe", ".csv"
         ).parent

@@ -1,5 +1,6 @@
 """``nomad-mj sweep``."""
 
+import shlex
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -114,7 +115,7 @@ class Sweep:
                 with screen.status("") as status:
                     check_grid(grid, status.update)
                 store.fold()  # a folder that cannot be written is told of before the work
-                _do(store, missing, pool, screen)
+                _do(store, missing, pool, folder, screen)
         return store
 
     def _pool(self) -> _Pool:
@@ -146,7 +147,7 @@ class Sweep:
             print_json(_told(store, metrics))
 
 
-def _do(store: Store, missing: list[SweepRun], pool: _Pool, screen: Console) -> None:
+def _do(store: Store, missing: list[SweepRun], pool: _Pool, folder: Path, screen: Console) -> None:
     """Do runs with a progress bar, and keep what is done whatever ends this."""
     total = len(store.grid)
     try:
@@ -159,9 +160,10 @@ def _do(store: Store, missing: list[SweepRun], pool: _Pool, screen: Console) -> 
                 store.add(run, row)
                 progress.update(task, completed=len(store.rows))
     except BaseException:
+        shows = f"nomad-mj sweep --only-read --out {shlex.quote(str(folder))}"
         screen.print(
             f"{len(store.rows)} of {total} runs are on file; the same command goes on from there, "
-            "with --only-read it shows what there is",
+            f"{shows} shows what there is",
             soft_wrap=True,
         )
         raise

@@ -13,7 +13,7 @@ from nomad_agents.cli.progress import TrainingProgress
 from nomad_agents.cli.resuming import require_same_files, require_same_training, training_of
 from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.cli.train_deep import run_deep_training
-from nomad_agents.curves import Curves
+from nomad_agents.curves import Curves, has_curves
 from nomad_agents.deep import LEARNERS
 from nomad_agents.deep.environment import make_env
 from nomad_agents.deep.extra import require_extra
@@ -85,7 +85,7 @@ class Train(TaskOptions):
         with self.path_finding() as test, interruptible():
             name = self._name(test, self.observation)
             path = output_file(self.out, name, ".npz")
-            self._require_free(path)
+            self._require_free(path, name)
             task, goal = self._task_kwargs(), self._goal_place()
             made = make_env(settings, self.observation, self.room, self.robot, task, goal)
             with closing(made) as env:
@@ -98,7 +98,7 @@ class Train(TaskOptions):
                     path,
                     screen,
                     self.conditions(),
-                    expanded(self.tensorboard) / path.stem if self.tensorboard else None,
+                    self._curves_folder(name),
                 )
         told = f"solved {report['solved']} of {report['starts']} starts"
         screen.print(f"{told} after {report['decisions']} decisions: {path}", soft_wrap=True)
@@ -114,13 +114,13 @@ class Train(TaskOptions):
         with self.path_finding() as env, interruptible():
             name = self._name(env, self.config)
             path = output_file(self.out, name, ".npz")
-            self._require_free(path)
+            self._require_free(path, name)
             resume = self.resume and path.exists()
             if self.resume and not resume:
                 screen.print(f"no checkpoint {path}: training begins anew", soft_wrap=True)
             agent, training = self._resume(env, path) if resume else (self._begin(env), Training())
             conditions = self.conditions() | {"files": digests(self.robot, self.room)}
-            with self._curves(path.stem, resume=resume) as curves:
+            with self._curves(name, resume=resume) as curves:
                 run_training(env, agent, settings, training, path, screen, conditions, curves)
             report = training_report(env, agent, training)
             screen.print(f"{_verdict(report, training)}: {path}", soft_wrap=True)
@@ -136,12 +136,21 @@ class Train(TaskOptions):
 
     def _curves(self, name: str, *, resume: bool) -> AbstractContextManager[Curves | None]:
         """Return what writes the curves of a run, None where none are wanted."""
-        if not self.tensorboard:
-            return nullcontext()
-        return Curves(expanded(self.tensorboard) / name, resume=resume)
+        folder = self._curves_folder(name)
+        return nullcontext() if folder is None else Curves(folder, resume=resume)
 
-    def _require_free(self, path: Path) -> None:
+    def _curves_folder(self, name: str) -> Path | None:
+        return expanded(self.tensorboard) / name if self.tensorboard else None
+
+    def _require_free(self, path: Path, name: str) -> None:
         """Raise OutputError if what is there would be lost."""
+        curves = self._curves_folder(name)
+        goes_on = self.resume and path.exists()
+        if curves is not None and has_curves(curves) and not (goes_on or self.overwrite):
+            raise OutputError(
+                f"{str(curves)!r} holds the curves of a training already: --overwrite replaces "
+                "them; or choose another --tensorboard"
+            )
         if self.resume and self.overwrite:
             raise ConfigError("--resume goes on, --overwrite begins anew: give one of them")
         if path.exists() and not (self.resume or self.overwrite):

@@ -16,8 +16,9 @@ from nomad_agents.experiments.experiment import (
 )
 from nomad_agents.experiments.export import export
 from nomad_agents.experiments.illustrate import Illustration, illustrate
+from nomad_agents.experiments.learnt import TRAINING
 from nomad_agents.experiments.report import NoVideo, Section, Video, provenance, write_report
-from nomad_agents.experiments.reproduction import Results, count_runs
+from nomad_agents.experiments.reproduction import Results, count_runs, trainings
 from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.experiments.showreel import film
 from nomad_agents.experiments.statistics import spread
@@ -43,7 +44,8 @@ def find(experiments: Sequence[Experiment], results: Results, study: Study) -> l
     return [
         Finding(each, make_table(each, results[each.name]), _judge(each, results, study))
         for each in experiments
-        if _parts(each.runs(study)) <= _parts(result.run for result in results[each.name])
+        if (parts := _parts(each.runs(study)))  # else nothing of it makes sense in this room
+        and parts <= _parts(result.run for result in results[each.name])
     ]
 
 
@@ -124,11 +126,19 @@ def present(
             shown = film(finding.experiment, study, runs, folder / "videos" / name)
         sections.append(_section(finding, study, pictures, shown))
     tell("writing the report")
-    made = provenance(study, every, count_runs([f.experiment for f in findings], study))
+    found = [finding.experiment for finding in findings]
+    made = provenance(study, _behind(found, results, study), count_runs(found, study))
     usual = (study.room, study.robot) == (DEFAULT_ROOM, DEFAULT_ROBOT)
     write_report(report, sections, made, seeds=study.seeds, introduced=usual)
     missing = {s.video.reason for s in sections if videos and isinstance(s.video, NoVideo)}
     return [f"no video: {reason}" for reason in sorted(missing)]
+
+
+def _behind(experiments: Sequence[Experiment], results: Results, study: Study) -> list[Result]:
+    """Return the results of some experiments, and of the trainings that they begin with."""
+    lessons = set(trainings(experiments, study))
+    learnt = [result for result in results.get(TRAINING, ()) if result.run in lessons]
+    return [*learnt, *(result for each in experiments for result in results[each.name])]
 
 
 def _section(

@@ -26,7 +26,7 @@ from nomad_mj.errors import OutputError
 
 Row = dict[str, Any]
 PACKAGES = ("nomad-mj", "mujoco", "numpy")
-_EDITION = 2  # one more whenever the same run comes to count or measure otherwise
+_EDITION = 3  # one more whenever the same run comes to count or measure otherwise
 
 
 @dataclass(frozen=True)
@@ -141,13 +141,15 @@ def stored_result(run: Run, folder: Path) -> Result | None:
         return None
     try:
         held = json.loads(path.read_text(encoding="utf-8"))
-        key = _key(run)
-        for name, here in key["packages"].items():
-            if here is None:  # what is not installed here, whoever reads needs not
-                key["packages"][name] = held["key"]["packages"][name]
+        key, made_with = _key(run), held["key"]["packages"]
+        # What is not installed here, whoever reads needs not.
+        missing = {name: made_with[name] for name, here in key["packages"].items() if here is None}
+        key["packages"] |= missing
         if held["key"] != key:
             return None
-        return Result(run, **{name: held[name] for name in _CONTENTS})
+        result = Result(run, **{name: held[name] for name in _CONTENTS})
+        result.machine |= missing
+        return result
     except (OSError, ValueError, KeyError, TypeError):
         raise OutputError(f"{str(path)!r} is no result of an experiment: remove it") from None
 

@@ -11,13 +11,14 @@ from nomad_agents.agent import Agent
 from nomad_agents.deep import DeepAgent, DeepSettings
 from nomad_agents.deep.environment import make_env
 from nomad_agents.deep.extra import require_extra
-from nomad_agents.deep.training import DeepTraining, train_deep
+from nomad_agents.deep.training import DeepTraining, require_budget, train_deep
 from nomad_agents.experiments.learnt import learn
 from nomad_agents.experiments.runs import Row
 from nomad_agents.learners.learner import Learner, Lesson
 from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner, ReactivePlannerConfig
 from nomad_agents.registry import SETTINGS, find_config, make_agent
 from nomad_agents.training import Training, TrainingConfig
+from nomad_mj.errors import ConfigError
 from nomad_mj.perception import OBSERVATIONS
 
 
@@ -154,6 +155,13 @@ class DeepLearner(Learner):
     def require(self) -> None:
         """Ask for PyTorch and Stable-Baselines3."""
         require_extra(curves=False)
+
+    def check_budget(self, budget: int) -> None:
+        """Ask PPO for a rollout at least."""
+        try:
+            require_budget(budget, 0, 0, self._settings)
+        except ConfigError as error:
+            raise ConfigError(f"--budget {budget}, {self.name}: {error}") from None
 
     def learn(self, lesson: Lesson) -> tuple[Agent, Row]:
         """Train until the budget is spent."""

@@ -109,6 +109,9 @@ class Learner(ABC):
     def require(self) -> None:
         """Raise ConfigError if something must be installed first."""
 
+    def check_budget(self, budget: int) -> None:
+        """Raise ConfigError if it can learn nothing from so few decisions."""
+
     @abstractmethod
     def learn(self, lesson: Lesson) -> tuple[Agent, Row]:
         """Return the agent that has learnt, and what it took, names beginning with ``learn_``."""

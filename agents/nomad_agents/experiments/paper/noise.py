@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -50,6 +51,12 @@ def _open(run: Run) -> PathFinding:
     return nomad_mj.load("path_finding", room=run.room, robot=run.robot, task_kwargs=noise)
 
 
+@lru_cache
+def _has_sonar(study: Study) -> bool:
+    rings = build_scene(study.room, study.robot).robot.layout.rings
+    return "sonar" in [ring.name for ring in rings]
+
+
 class Noise(Experiment):
     """Learning and driving with worse sensors, and with better ones."""
 
@@ -71,9 +78,7 @@ class Noise(Experiment):
 
     def runs(self, study: Study) -> list[Run]:
         """Return a run for each kind of noise, agent and seed; echoes are those of a sonar."""
-        rings = build_scene(study.room, study.robot).robot.layout.rings
-        has_sonar = "sonar" in [ring.name for ring in rings]
-        cases = [case for case in NOISES if has_sonar or case != _ECHOES]
+        cases = [case for case in NOISES if case != _ECHOES or _has_sonar(study)]
         return self.plan_runs(study, cases, (STRAIGHT, PLANNER), costly=(_ECHOES,))
 
     def work(self, run: Run, folder: Path) -> Result:

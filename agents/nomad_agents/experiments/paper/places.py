@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -59,6 +60,7 @@ class PlaceRun(Run):
         return (self.room, other) if other else (self.room,)
 
 
+@lru_cache
 def _fits(study: Study, place: Place) -> bool:
     """Return whether there is such a place, and whether it is another one than the study's."""
     room = place.room or study.room
