@@ -1,14 +1,18 @@
 """What a benchmark says of many runs: profiles, curves, tables."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from known_benchmark import made_up, made_up_run
+from nomad_agents.benchmark.checks import until_mastered
 from nomad_agents.benchmark.efficiency import sample_efficiency
 from nomad_agents.benchmark.numbers import grouped, spread_of, strata
 from nomad_agents.benchmark.presentation import terminal_tables
 from nomad_agents.benchmark.profiles import performance_profile
+from nomad_agents.benchmark.run import barn_score_of
 from nomad_agents.benchmark.tables import (
     driving_table,
     glance_table,
@@ -16,6 +20,8 @@ from nomad_agents.benchmark.tables import (
     quartiles,
     until_cell,
 )
+from nomad_agents.episode import Episode
+from nomad_agents.evaluation import Trial
 from nomad_agents.experiments.runs import Result
 
 SCORES = st.lists(
@@ -48,6 +54,40 @@ def test_who_scores_more_everywhere_has_the_higher_profile(
 def test_a_profile_does_not_know_the_order_of_runs(scores: list[np.ndarray]) -> None:
     turned = performance_profile([each[::-1] for each in scores[::-1]], TAUS)
     assert np.array_equal(performance_profile(scores, TAUS).share, turned.share)
+
+
+@pytest.mark.parametrize(
+    ("reached", "took", "shortest", "score"),
+    [
+        (True, 1.0, 2.0, 0.25),
+        (True, 20.0, 2.0, 0.2),
+        (True, 99.0, 2.0, 0.125),
+        (False, 1.0, 2.0, 0.0),
+        (True, 1.0, math.inf, 0.0),
+        (True, 1.0, 0.0, 0.25),
+    ],
+)
+def test_the_barn_score_of_an_episode(
+    reached: bool, took: float, shortest: float, score: float
+) -> None:
+    episode = Episode(reached, 1, 1, 0, 0, 0, took, 1.0, 0.2)
+    trial = Trial(np.zeros(3), episode, np.zeros((2, 2)), shortest)
+    assert barn_score_of(trial, 0.5) == score
+
+
+def test_mastered_is_the_first_check_with_nine_in_ten_of_each_kind() -> None:
+    curve = [
+        {"decisions": 0, "sim_s": 0.0, "success_rate": 0.5, "unaided_success_rate": 0.0},
+        {"decisions": 25, "sim_s": 50.0, "success_rate": 0.9, "unaided_success_rate": 0.89},
+        {"decisions": 50, "sim_s": 99.0, "success_rate": 0.1, "unaided_success_rate": 0.9},
+    ]
+    assert until_mastered(curve) == {
+        "decisions_to_90": 25,
+        "sim_s_to_90": 50.0,
+        "unaided_decisions_to_90": 50,
+        "unaided_sim_s_to_90": 99.0,
+    }
+    assert until_mastered(curve[:1])["decisions_to_90"] is None
 
 
 def test_the_area_under_a_profile_is_the_mean() -> None:

@@ -8,12 +8,14 @@ import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import fields
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
 from conftest import SmallRoom
+from nomad_agents.cli import bench
 from nomad_agents.cli.bench import Bench
 from nomad_agents.cli.demo import Demo
 from nomad_agents.cli.evaluate import METRICS, Evaluate
@@ -312,6 +314,34 @@ def test_options_that_would_be_ignored_or_fail_late_are_refused(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert told in refused(run(*arguments.split()))
+
+
+def test_the_demo_learns_compares_and_draws(run: Run, small_room: Path, tmp_path: Path) -> None:
+    few = ("--starts", 2, "--videos", 0, "--out", tmp_path, "--json")
+    said = run("demo", "--room", small_room, *few)
+    told = json.loads(said.out)
+    assert said.code == 0 and told["training"]["starts"] == 3
+    assert list(told["unseen"]) == ["reactive_planner", "straight", "planner"]
+    figures = {f"{name}.{end}" for name in ("fig6", "fig7") for end in ("png", "pdf")}
+    assert {path.name for path in tmp_path.iterdir()} == {"small.npz", *figures}
+
+
+def test_bench_tells_every_ratio(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    few: dict[str, dict[str, int]] = {
+        "control_step_ratio": {"blocks": 1, "steps": 2},
+        "training_ratio": {"decisions": 2},
+        "decision_times": {"repeats": 2},
+        "batch_ratio": {"blocks": 1, "steps": 1},
+        "async_ratio": {"blocks": 1, "steps": 1},
+        "perception_ratio": {"blocks": 1, "singles": 8},
+        "simulated_rate": {"blocks": 1, "steps": 2},
+    }
+    for name, options in few.items():
+        monkeypatch.setattr(bench, name, partial(getattr(bench, name), **options))
+    monkeypatch.setattr(bench, "_FRAMES", 8)
+    told = json.loads(run("bench", "--room", "empty_room", "--json").out)
+    assert list(told) == list(bench.LIMITS)
+    assert all(value is None or value > 0 for value in told.values())
 
 
 def test_an_interruption_exits_130(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,7 +7,14 @@ from pathlib import Path
 import pytest
 from nomad_agents.evaluation import draw_starts
 from nomad_agents.experiments import measures
-from nomad_agents.experiments.experiment import LEARNER, PLANNER, Experiment, Study, Verdict
+from nomad_agents.experiments.experiment import (
+    LEARNER,
+    PLANNER,
+    STRAIGHT,
+    Experiment,
+    Study,
+    Verdict,
+)
 from nomad_agents.experiments.learnt import train_room, training_run
 from nomad_agents.experiments.paper import (
     EXPERIMENTS,
@@ -19,7 +26,7 @@ from nomad_agents.experiments.paper import (
     robots,
 )
 from nomad_agents.experiments.reproduction import count_runs, trainings
-from nomad_agents.experiments.runs import Result, Run, do_runs
+from nomad_agents.experiments.runs import Result, Row, Run, do_runs
 
 from nomad_mj.envs import PathFinding
 from nomad_mj.types import FloatArray
@@ -122,6 +129,84 @@ def test_a_verdict_follows_the_numbers() -> None:
     assert verdict(700, 1.0).holds == "holds"
     assert verdict(700, 0.9).holds == "holds in part"
     assert verdict(2000, 1.0).holds == "holds in part"
+
+
+def learner(case: str = "", **row: object) -> tuple[str, str, Row]:
+    return case, LEARNER, row
+
+
+def noises(*reached: float) -> list[tuple[str, str, Row]]:
+    cases = ("none", "±15 %", "±30 %")
+    return [learner(case, success_rate=share) for case, share in zip(cases, reached, strict=True)]
+
+
+PLANNED = ("", PLANNER, {"suitable": 0.8})
+OFF, ON = "learning off", "learning on"
+RULES: list[tuple[str, list[tuple[str, str, Row]], str]] = [
+    ("fig7", [learner(known=0.9, suitable=0.75), PLANNED], "holds"),
+    ("fig7", [learner(known=0.89, suitable=0.75), PLANNED], "holds in part"),
+    ("fig7", [learner(known=0.89, suitable=0.74), PLANNED], "does not hold"),
+    ("fig8", [learner("2 m", alike=0.75, success_rate=0.9)], "holds"),
+    ("fig8", [learner("2 m", alike=0.75, success_rate=0.89)], "holds in part"),
+    ("fig8", [learner("2 m", alike=0.74, success_rate=0.74)], "does not hold"),
+    ("fig9", [learner("clutter", known=0.49, known_suitable=0.2)], "holds"),
+    ("fig9", [learner("clutter", known=0.5, known_suitable=0.2)], "holds in part"),
+    ("fig9", [learner("clutter", known=0.5, known_suitable=0.96)], "does not hold"),
+    ("fig11", [learner(OFF, success_rate=0.98), learner(ON, success_rate=0.0)], "holds"),
+    ("fig11", [learner(OFF, success_rate=0.8), learner(ON, success_rate=1.0)], "holds in part"),
+    ("fig12", [learner(OFF, success_rate=0.95, no_contact_rate=0.99)], "holds"),
+    ("fig12", [learner(OFF, success_rate=1.0, no_contact_rate=0.98)], "holds in part"),
+    ("fig14", [learner(learn_solved_all=True, learn_reactions=492, learn_plannings=94)], "holds"),
+    (
+        "fig14",
+        [learner(learn_solved_all=True, learn_reactions=493, learn_plannings=94)],
+        "holds in part",
+    ),
+    ("noise", noises(1.0, 0.98, 0.9), "holds"),
+    ("noise", noises(1.0, 0.9, 0.9), "holds in part"),
+    ("noise", noises(1.0, 0.89, 0.9), "does not hold"),
+    ("timing", [learner(reaction_100_ms=40.0, planning_100_ms=1600.0)], "holds"),
+    ("timing", [learner(reaction_100_ms=41.0, planning_100_ms=1600.0)], "does not hold"),
+    ("robots", [learner("a", learn_solved_all=n < 9, success_rate=1) for n in range(10)], "holds"),
+]
+
+
+@pytest.mark.parametrize(("name", "rows", "holds"), RULES)
+def test_verdicts_follow_the_rules_of_the_page(
+    name: str, rows: list[tuple[str, str, Row]], holds: str
+) -> None:
+    results = [
+        Result(Run(name, case, agent, "faithful", "paper_room", "nomad200", 0), row)
+        for case, agent, row in rows
+    ]
+    assert EXPERIMENTS[name].judge(results).holds == holds
+
+
+@each_experiment
+@pytest.mark.parametrize("agent", [STRAIGHT, PLANNER])
+def test_baselines_do_their_runs_too(
+    experiment: Experiment, agent: str, trained: tuple[Study, Path], small: None
+) -> None:
+    study, folder = trained
+    runs = [run for run in experiment.runs(study) if run.agent == agent]
+    if not runs:
+        pytest.skip("has no such baseline")
+    row = experiment.work(runs[0], folder).row
+    assert not any(name.startswith("learn_") for name in row)
+    assert 0 <= row.get("success_rate", row.get("suitable", row.get("again", -1))) <= 1
+
+
+@pytest.mark.parametrize(
+    ("name", "case"), [("noise", "±15 %"), ("fig8", "2 m"), ("ablations", "ahead ±45°")]
+)
+def test_cases_with_a_way_of_their_own_are_done(
+    name: str, case: str, trained: tuple[Study, Path], small: None
+) -> None:
+    study, folder = trained
+    experiment = EXPERIMENTS[name]
+    run = next(r for r in experiment.runs(study) if (r.case, r.agent) == (case, LEARNER))
+    wanted = {row.key for row in experiment.table if row.case == case}
+    assert wanted <= set(experiment.work(run, folder).row)
 
 
 def test_fig10_is_judged_at_each_place_however_many_runs_it_has() -> None:

@@ -263,8 +263,14 @@ def test_killed_in_parts_and_as_a_whole_it_goes_on_to_the_same(
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_full_disk_is_told_and_nothing_is_lost(
-    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    words: list[str],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    # Python would keep compiled modules that were cut off.
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (4000, limits[1]))
     try:

@@ -11,12 +11,15 @@ import contextlib
 import io
 import os
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+from nomad_agents.cli.main import COMMANDS
+from nomad_agents.cli.parsing import parse
 from nomad_agents.reactive_planner import FAITHFUL, TUNED
 
 import nomad_mj
@@ -26,6 +29,7 @@ from nomad_mj.tasks import MotorConfig
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGES = sorted(DOCS.glob("*.md"))
+README = DOCS.parent / "README.md"
 FENCE = re.compile(r"^```(\w+)(?: (\w+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"<!-- (\S+\.xml) -->")
 SHEET = re.compile(r"# (\S+\.yaml)\n")
@@ -101,11 +105,30 @@ def test_snippets_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
             assert snippet.text == printed, where
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", [README, *PAGES], ids=lambda page: page.stem)
+def test_every_command_that_a_page_shows_has_these_options(page: Path) -> None:
+    for snippet in snippets(page):
+        for line in snippet.text.replace("\\\n", " ").splitlines():
+            if line.startswith("nomad-mj ") and not re.search(r"\.\.\.|[|>&]|--help", line):
+                parse(COMMANDS, "", shlex.split(line, comments=True)[1:])
+
+
+def anchors(page: Path) -> set[str]:
+    """Return what links to a page may end in: its headings, as they are made anchors of."""
+    headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {
+        re.sub(r"[^\w -]", "", heading).strip().lower().replace(" ", "-") for heading in headings
+    }
+
+
+@pytest.mark.parametrize("page", [README, *PAGES], ids=lambda page: page.stem)
 def test_links_lead_somewhere(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
-    for link in re.findall(r"\]\(([^)#:]+)\)", text):
-        assert (page.parent / link).exists(), f"{page.name}: {link}"
+    for link in re.findall(r"\]\(([^):]+)\)", text):
+        name, _, anchor = link.partition("#")
+        target = page.parent / name if name else page
+        assert target.exists(), f"{page.name}: {link}"
+        assert not anchor or anchor in anchors(target), f"{page.name}: {link}"
 
 
 def test_files_that_are_named_exist() -> None:

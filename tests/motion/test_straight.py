@@ -151,6 +151,8 @@ def test_full_turns_of_heading_or_wheels_change_nothing(
     for (speed, steer), (other, other_steer) in zip(one.commands, turned.commands, strict=False):
         assert abs(speed) == pytest.approx(abs(other), abs=1e-6)
         assert abs(steer) == pytest.approx(abs(other_steer), abs=1e-6)
+    assert abs(len(one.commands) - len(turned.commands)) <= 1
+    assert turned.progress == pytest.approx(one.progress, abs=0.01)
 
 
 @given(headings, headings)

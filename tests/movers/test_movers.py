@@ -9,7 +9,7 @@ import pytest
 import shapely
 from known_movers import FAST, RADIUS, about, motor, movers_of
 
-from nomad_mj import MotorEnvironment, MovingGoal, MovingObstacles
+from nomad_mj import MotorEnvironment, MovingGoal, MovingObstacles, OdometryNoise
 from nomad_mj.errors import ConfigError, NomadError, StartError
 from nomad_mj.movers.movers import GAP, ROBOT_GAP, START_GAP
 
@@ -109,7 +109,21 @@ def test_a_start_that_cannot_be_is_asked_for_once(monkeypatch: pytest.MonkeyPatc
     env.close()
 
 
-def test_nothing_else_changes_where_movers_are_far(env: MotorEnvironment) -> None:
+def test_obstacles_draw_from_a_stream_of_their_own() -> None:
+    noise = {"odometry_noise": OdometryNoise(0.05, 0.05, 0.1)}
+    plain = motor("empty_room", **noise)
+    moving = motor("empty_room", moving_obstacles=MovingObstacles(count=2), **noise)
+    for _ in range(4):
+        steps = [env.reset() for env in (plain, moving)]
+        steps += [env.step((0.2, 0.1, 0.3)) for env in (plain, moving)]
+        told = [step.observation["odometry"] for step in steps]
+        np.testing.assert_array_equal(told[0], told[1])
+        np.testing.assert_array_equal(told[2], told[3])
+    plain.close()
+    moving.close()
+
+
+def test_nothing_else_changes_where_movers_are_far() -> None:
     """The other streams of an episode are what they are without movers."""
     plain = motor()
     moving = motor(moving_goal=MovingGoal())

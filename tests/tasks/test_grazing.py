@@ -101,7 +101,7 @@ def test_a_wall_straight_ahead_reads_as_ever(
     env.physics.grazing = math.radians(degrees)
     seen = env.reset(start=(10 - 0.265 - away, 5.0)).observation
     assert seen["sonar"][0] == pytest.approx(max(away, 0.15), abs=1e-9)
-    assert seen["infrared"][0] == pytest.approx(away, abs=1e-9) if away < 0.56 else 0.6
+    assert seen["infrared"][0] == pytest.approx(away if away < 0.56 else 0.6, abs=1e-9)
 
 
 def readings(room: Path, options: dict[str, Any], start: tuple[float, float]) -> dict[str, Any]:

@@ -117,10 +117,10 @@ def barn_score(env: PathFinding, trials: Sequence[Trial]) -> float:
     path takes at the robot's top speed.
     """
     speed = env.scene.robot.drive.limits.translate
-    return float(np.mean([_barn_score(trial, speed) for trial in trials]))
+    return float(np.mean([barn_score_of(trial, speed) for trial in trials]))
 
 
-def _barn_score(trial: Trial, speed: float) -> float:
+def barn_score_of(trial: Trial, speed: float) -> float:
     """Return the score of one episode with a robot of a top speed [m/s]."""
     best, took = trial.shortest / speed, trial.episode.duration  # [s]
     if not trial.episode.reached or not np.isfinite(best):

@@ -80,7 +80,7 @@ class Session:
     ) -> None:
         self.env, self.controls, self.agent = env, controls, agent
         self.on_step: Callable[[], None] = lambda: None
-        self.news = ""
+        self.news = self._refusal = ""
         self.move: FloatArray | None = None
         self.episodes = 0
         self.agent_drives = agent is not None
@@ -134,7 +134,7 @@ class Session:
             try:  # path finding has not seen what was driven by hand: it begins here
                 self._reset([*self.env.physics.pose()])
             except StartError as error:
-                self.news = f"{self.agent.name} cannot start here: {error}"
+                self._refusal = self.news = f"{self.agent.name} cannot start here: {error}"
                 return
             self.agent_drives, self.news = True, ""
         elif request == "reset":
@@ -150,7 +150,7 @@ class Session:
         self._hand.halt()
         if self.agent is not None:
             self.agent.start_episode(self.env.motor.task.random)
-        self.move, self.news = None, ""
+        self.move, self.news, self._refusal = None, "", ""
         self.episodes += 1
         self.on_step()
 
@@ -191,11 +191,16 @@ class Session:
         """Say what has become of driving by hand."""
         task, travel = self.env.motor.task, self.env.motor.task.travel
         way = math.hypot(travel.forward, travel.sideways)
+        moves = way > _STILL * CONTROL_TIMESTEP
+        if self._refusal and not moves:  # told until the robot drives on
+            self.news = self._refusal
+            return
+        self._refusal = ""
         if self.touched.size:
             self.news = "bumper touched"
         elif task.goal_distance(self.env.physics) <= task.config.goal_radius:
             self.news = "goal reached"
-        elif self.news == "bumper touched" or way > _STILL * CONTROL_TIMESTEP:
+        elif self.news == "bumper touched" or moves:
             self.news = ""
 
     @property
