@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from nomad_agents.sweeps import store as store_module
 from nomad_agents.sweeps.grid import Grid, SweepRun
 from nomad_agents.sweeps.store import TABLE, Store, as_table, locked, open_store, read_store
+from nomad_agents.sweeps.summary import make_summary
 
 from nomad_mj.errors import ConfigError, OutputError
 
@@ -40,6 +41,13 @@ def filled(folder: Path, count: int, *, fold: bool) -> Store:
 
 
 WHOLE = as_table(GRID, {run: row(run) for run in GRID.runs()})
+
+
+def test_the_table_shows_each_combinations_own_numbers(tmp_path: Path) -> None:
+    table = make_summary(filled(tmp_path, len(GRID), fold=False), ["spl", "learn_reactions"])
+    assert [row[:3] for row in table.rows] == [(k, r, "2") for k in ("0.1", "0.2") for r in "abc"]
+    assert [row[3] for row in table.rows[::3]] == ["0.533 [0.283, 0.783]", "0.567 [0.317, 0.817]"]
+    assert [bool(row[5]) for row in table.rows] == [False, True, False] * 2
 
 
 @settings(max_examples=25)

@@ -35,7 +35,8 @@ def same(one: Any, other: Any, where: str) -> None:
 
 
 def pair(name: str, mode: AutoresetMode, observation: str, limit: int) -> tuple[Vector, Vector]:
-    options: dict[str, Any] = {"observation": observation, "task_kwargs": NOISY}
+    pay = {"goal_bonus": 2.0, "progress": 0.5}
+    options: dict[str, Any] = {"observation": observation, "task_kwargs": NOISY, **pay}
     many = gymnasium.make_vec(
         name,
         num_envs=len(ROOMS),
@@ -55,6 +56,23 @@ def pair(name: str, mode: AutoresetMode, observation: str, limit: int) -> tuple[
         autoreset_mode=mode,
     )
     return many, ones
+
+
+def test_a_sparse_reward_pays_progress_and_the_goal_alone_to_one_and_to_many() -> None:
+    pay: dict[str, Any] = {"reward": "sparse", "goal_bonus": 2.0, "progress": 3.0}
+    one = gymnasium.make(MOTOR, room="empty_room", **pay)
+    many = gymnasium.make_vec(MOTOR, 1, "vector_entry_point", room="empty_room", threads=1, **pay)
+    goal = one.get_wrapper_attr("task").goal
+    options, over = {"start": (goal[0] - 0.6, goal[1], 0.0)}, False
+    before = one.reset(seed=0, options=options)[1]["goal_distance"]
+    many.reset(seed=0, options=options)
+    while not over:
+        _, reward, over, _, info = one.step(np.array([1, 0, 0], dtype=np.float32))
+        nearer, before = before - info["goal_distance"], info["goal_distance"]
+        assert reward == pytest.approx(3.0 * nearer + 3.0 * info["is_success"], abs=1e-12)
+        assert many.step(np.array([[1.0, 0, 0]]))[1][0] == reward
+    one.close()
+    many.close()
 
 
 @pytest.mark.parametrize(
