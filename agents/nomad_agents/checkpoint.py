@@ -132,7 +132,7 @@ def read_npz(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
         # Opened here, since numpy leaves a file open that is no zip inside.
         with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
             arrays: dict[str, np.ndarray] = {name: file[name] for name in file.files}
-        metadata: Any = json.loads(str(arrays.pop("metadata")[()]))
+        metadata: Any = json.loads(str(arrays.pop("metadata")[()]), parse_constant=_no_number)
     except FileNotFoundError:
         raise CheckpointError(f"checkpoint {str(path)!r} does not exist") from None
     except OSError as error:
@@ -144,6 +144,11 @@ def read_npz(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     if not isinstance(metadata, dict):
         raise CheckpointError(f"{str(path)!r} is no checkpoint")
     return cast(dict[str, Any], metadata), arrays
+
+
+def _no_number(word: str) -> None:
+    """Refuse what JSON does not know, though Python's reader takes it: NaN and infinities."""
+    raise ValueError(f"{word} is no number")
 
 
 def require_format(path: Path, metadata: Mapping[str, Any], format_id: str, number: int) -> None:

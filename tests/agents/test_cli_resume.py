@@ -200,7 +200,7 @@ def test_a_full_disk_is_one_line_and_keeps_the_old_file(
 
     command = [*NOMAD, "train", "--room", str(small_room), "--out", str(path)]
     ended = subprocess.run(
-        [*command, "--max-decisions", "2"],
+        [*command, "--max-decisions", "2", "--overwrite"],
         preexec_fn=few_bytes,
         capture_output=True,
         text=True,

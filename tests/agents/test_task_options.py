@@ -186,7 +186,9 @@ def test_resuming_under_other_conditions_is_refused(
     told = f"nomad-mj: cannot resume {str(path)!r}: it was trained with --grazing 40.0, not 90.0\n"
     assert capsys.readouterr().err == told
     assert path.read_bytes() == before
-    assert main([*common, "--agent", str(path)]) == 0  # but to learn on elsewhere is allowed
+    assert (
+        main([*common, "--agent", str(path), "--overwrite"]) == 0
+    )  # but to learn on elsewhere is allowed
 
 
 def evaluated(capsys: pytest.CaptureFixture[str], *options: str) -> dict[str, Any]:
