@@ -83,7 +83,7 @@ raise SystemExit(main.main())
 def start(words: list[str], out: Path, *how: str) -> subprocess.Popen[str]:
     program = [sys.executable, "-c", PROGRAM, "sweep", *words, "--out", str(out)]
     return subprocess.Popen(
-        [*program, "--jobs", "1", *how],
+        [*program, *([] if "--address" in how else ["--jobs", "1"]), *how],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
