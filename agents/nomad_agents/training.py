@@ -153,13 +153,9 @@ def train(
     while not training.done and training.passes <= config.max_passes:
         spent = config.max_decisions and training.decisions >= config.max_decisions
         if spent and not training.testing:
-            at_end = not training.next_start
-            if config.whole_tests or (training.tested and at_end):
+            if config.whole_tests or (training.tested and not training.next_start):
                 break
-            # A last test, of what it knows now. Before `min_passes` a pass ends without one, and it
-            # is that pass's: the next has not begun.
-            training.passes -= at_end
-            training.testing, training.next_start = True, 0
+            _begin_last_test(training)
         began = time.perf_counter()
         before = replace(training), agent.network.arrays(), agent.plannings
         try:
@@ -177,6 +173,15 @@ def train(
         if after_episode is not None:
             after_episode(training)
     return training
+
+
+def _begin_last_test(training: Training) -> None:
+    """Let what it knows now be tested, its decisions being spent.
+
+    Before `min_passes` a pass ends without a test; this is that pass's: the next has not begun.
+    """
+    training.passes -= not training.next_start
+    training.testing, training.next_start = True, 0
 
 
 def _learn(

@@ -162,9 +162,9 @@ def test_with_nothing_in_the_way() -> None:
 
 
 def test_fast_enough_to_be_made_at_every_evaluation() -> None:
-    begin = time.thread_time()
+    begin = time.perf_counter()
     Geodesic(CLUTTER, GOAL, RADIUS).length(PLACES)
-    assert time.thread_time() - begin < 1.5
+    assert time.perf_counter() - begin < 1.5
 
 
 def test_a_large_room_is_measured_in_seconds_and_in_little_memory() -> None:

@@ -126,19 +126,21 @@ def present(
             shown = film(finding.experiment, study, runs, folder / "videos" / name)
         sections.append(_section(finding, study, pictures, shown))
     tell("writing the report")
-    found = [finding.experiment for finding in findings]
-    made = provenance(study, _behind(found, results, study), count_runs(found, study))
+    made = _provenance([finding.experiment for finding in findings], results, study)
     usual = (study.room, study.robot) == (DEFAULT_ROOM, DEFAULT_ROBOT)
     write_report(report, sections, made, seeds=study.seeds, introduced=usual)
     missing = {s.video.reason for s in sections if videos and isinstance(s.video, NoVideo)}
     return [f"no video: {reason}" for reason in sorted(missing)]
 
 
-def _behind(experiments: Sequence[Experiment], results: Results, study: Study) -> list[Result]:
-    """Return the results of some experiments, and of the trainings that they begin with."""
+def _provenance(
+    experiments: Sequence[Experiment], results: Results, study: Study
+) -> list[tuple[str, str]]:
+    """Return where the numbers of some experiments, and what these begin with, come from."""
     lessons = set(trainings(experiments, study))
-    learnt = [result for result in results.get(TRAINING, ()) if result.run in lessons]
-    return [*learnt, *(result for each in experiments for result in results[each.name])]
+    behind = [result for result in results.get(TRAINING, ()) if result.run in lessons]
+    behind += [result for each in experiments for result in results[each.name]]
+    return provenance(study, behind, count_runs(experiments, study))
 
 
 def _section(
