@@ -169,9 +169,12 @@ class PotentialField(ClassicalAgent[PotentialConfig]):
 
 
 def _clear(heading: float, cells: FloatArray, reach: float) -> tuple[float, float]:
-    """Return the direction nearest to this one that leads anywhere, and how far it is free [m]."""
+    """Return the direction nearest to this one that leads anywhere, and how far it is free [m].
+
+    Of two that are equally near, to the left and to the right, the freer one.
+    """
     headings = wrap_angle(heading + _FAN)
     free = free_way(headings, cells, reach)
-    open_ways = free > BLOCKED
-    best = int(np.argmax(open_ways if open_ways.any() else free))
+    open_ways = free >= min(BLOCKED, free.max())
+    best = int(np.lexsort((-free, np.abs(_FAN), ~open_ways))[0])
     return float(headings[best]), float(free[best])
