@@ -26,6 +26,7 @@ def imported(statement: str) -> set[str]:
         "import nomad_agents",
         "from nomad_agents.cli.main import main",
         "import nomad_agents.cli.listing",
+        "import nomad_agents.experiments.paper",  # what each process of `reproduce` needs
     ],
 )
 def test_nothing_heavy_is_imported_before_it_is_needed(statement: str) -> None:

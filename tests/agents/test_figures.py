@@ -9,13 +9,14 @@ import matplotlib
 import numpy as np
 import pytest
 import shapely
-from nomad_agents.experiments.figures import Panel, draw_actions, draw_paths, lattice
+from nomad_agents.experiments.figures import Panel, draw_actions, draw_paths
 from nomad_agents.experiments.figures.cases import Shares, draw_cases
 from nomad_agents.experiments.figures.categories import draw_categories
 from nomad_agents.experiments.figures.film_strip import draw_film
 from nomad_agents.experiments.figures.learning_curve import draw_learning
 from nomad_agents.experiments.figures.timing import draw_timing
 from nomad_agents.experiments.figures.variants import Measure, draw_variants
+from nomad_agents.experiments.lattice import lattice
 from nomad_agents.experiments.pictures import Action, Film, Way, action_map
 from nomad_agents.experiments.runs import Row
 from nomad_agents.experiments.statistics import spread

@@ -14,7 +14,8 @@ from nomad_agents.cli.evaluate import format_metric, run_evaluation
 from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.cli.train import run_training
 from nomad_agents.evaluation import Trial, draw_starts, summarise
-from nomad_agents.experiments.figures import Panel, draw_actions, draw_paths, lattice
+from nomad_agents.experiments.figures import Panel, draw_actions, draw_paths
+from nomad_agents.experiments.lattice import lattice
 from nomad_agents.experiments.pictures import LATTICE, action_map, spread_starts, way
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.recording import record

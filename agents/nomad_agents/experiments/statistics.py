@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import bootstrap, trim_mean
 
 from nomad_mj.types import FloatArray
 
@@ -51,6 +50,8 @@ def spread(strata: Sequence[FloatArray]) -> Spread:
         The number in each run, NaN where it has none; one array for each case, in which the
         bootstrap draws as many runs as there are.
     """
+    from scipy.stats import trim_mean  # takes a second, which no worker and no --help need wait for
+
     finite = [values[np.isfinite(values)] for values in strata]
     finite = [values for values in finite if len(values)]
     if not finite:
@@ -63,6 +64,8 @@ def spread(strata: Sequence[FloatArray]) -> Spread:
 
 def _bounds(strata: Sequence[FloatArray]) -> tuple[float, float]:
     """Return the percentiles of the bootstrap's interquartile means, each stratum drawn anew."""
+    from scipy.stats import bootstrap, trim_mean
+
     # Drawing one run out of one gives that run, which scipy refuses to try.
     single = np.concatenate([np.empty(0), *[values for values in strata if len(values) == 1]])
     many = [values for values in strata if len(values) > 1]

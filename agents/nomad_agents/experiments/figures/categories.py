@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.patches import Rectangle, Wedge
-from scipy.ndimage import label
 
 from nomad_agents.experiments.figures.room import Panel, draw_goal, draw_plan, room_height
 from nomad_agents.experiments.figures.style import INK, WIDTH, sheet
@@ -112,6 +111,8 @@ def _draw_arrows(
     axes: Axes, cells: _Cells, category: int, colour: tuple[float, float, float, float]
 ) -> None:
     """Draw an arrow in each of a category's regions, in the cell nearest to its middle."""
+    from scipy.ndimage import label  # takes long to import
+
     found: Any = label(cells.category == category)
     regions, count = found
     dark = np.dot(colour[:3], (0.299, 0.587, 0.114)) < 0.5

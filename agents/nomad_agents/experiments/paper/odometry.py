@@ -17,7 +17,7 @@ from nomad_agents.experiments.experiment import (
     Verdict,
     column,
 )
-from nomad_agents.experiments.figures import lattice
+from nomad_agents.experiments.lattice import lattice
 from nomad_agents.experiments.learnt import acting_agent, trained_agent
 from nomad_agents.experiments.measures import assess, episode_rows, judge_actions
 from nomad_agents.experiments.pictures import (
