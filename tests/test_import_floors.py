@@ -12,6 +12,7 @@ ROOT = Path(__file__).resolve().parents[1]
 # A module may import what lies on a lower floor, and its own package.
 FLOORS = (
     ("types", "errors"),
+    ("option_types",),
     ("geometry", "limits", "_gl_probe"),
     ("perception", "motion", "_gl"),
     ("values", "guard"),
@@ -24,7 +25,7 @@ FLOORS = (
     ("gym",),
 )
 FLOOR = {part: floor for floor, parts in enumerate(FLOORS) for part in parts}
-PURE = {part for parts in FLOORS[:3] for part in parts if not part.startswith("_")}
+PURE = {part for parts in FLOORS[:4] for part in parts if not part.startswith("_")}
 CORE = ("agent", "reactive_planner", "baselines")
 # The rest of `deep` trains, with PyTorch.
 DEEP_CORE = {f"deep/{name}.py" for name in ("__init__", "agent", "policy", "settings")}

@@ -3,13 +3,13 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any, cast, get_type_hints
 
 import numpy as np
 
-from nomad_mj.envs.option_types import check_types
 from nomad_mj.envs.path_finding import PathFindingConfig
 from nomad_mj.errors import ConfigError, UnknownNameError
+from nomad_mj.option_types import check_types
 from nomad_mj.scene import Scene, build_scene
 from nomad_mj.tasks import MotorConfig
 
@@ -65,7 +65,8 @@ def read_options(
     """Check and sort options; parameters and errors as of `load`."""
     if task_name not in TASKS:
         raise UnknownNameError("task", task_name, TASKS)
-    options, environment = dict(task_kwargs or {}), dict(environment_kwargs or {})
+    options = _mapping("task_kwargs", task_kwargs)
+    environment = _mapping("environment_kwargs", environment_kwargs)
     known = ["random", *SCENE_OPTIONS, *(f.name for f in fields(MotorConfig))]
     accepts = ["time_limit"]
     if task_name == "motor":
@@ -86,6 +87,12 @@ def read_options(
         path_finding=_config(PathFindingConfig, options),
         environment=environment,
     )
+
+
+def _mapping(what: str, given: Any) -> dict[str, Any]:
+    if not isinstance(given, Mapping | None):
+        raise ConfigError(f"{what}: must be a mapping of options, not {given!r}")
+    return dict(cast("Mapping[str, Any]", given or {}))
 
 
 def _config(cls: type[Any], options: dict[str, Any]) -> Any:

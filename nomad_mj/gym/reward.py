@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from nomad_mj.errors import ConfigError
+from nomad_mj.option_types import check_fields
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,7 @@ class RewardOptions:
     progress: float = 0.0
 
     def __post_init__(self) -> None:
+        check_fields(self)
         if self.reward not in ("task", "sparse"):
             raise ConfigError(f"reward {self.reward!r}: must be 'task' or 'sparse'")
         for name in ("goal_bonus", "progress"):

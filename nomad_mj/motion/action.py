@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from nomad_mj.errors import ConfigError
 from nomad_mj.geometry import direction, rotate
+from nomad_mj.option_types import check_fields
 from nomad_mj.types import FloatArray
 
 
@@ -26,6 +27,7 @@ class ActionSpec:
     shortest: float = 0.01
 
     def __post_init__(self) -> None:
+        check_fields(self)
         if not 0 < self.shortest <= self.longest < np.inf:
             raise ConfigError(
                 f"moves of {self.shortest} to {self.longest} m: must be above 0, the shortest first"

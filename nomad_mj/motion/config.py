@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 from nomad_mj.errors import ConfigError
+from nomad_mj.option_types import check_fields
 
 _PATIENCE = 10.0  # [s] for a robot to come to rest that should
 
@@ -41,6 +42,7 @@ class MotionConfig:
     time_out: float = 20.0
 
     def __post_init__(self) -> None:
+        check_fields(self)
         for field, least, most in (
             ("security_distance", 0.0, math.inf),
             ("ahead", 0.0, math.pi),

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nomad_mj.errors import ConfigError
+from nomad_mj.option_types import check_fields
 from nomad_mj.scene import CONTROL_TIMESTEP
 from nomad_mj.types import FloatArray
 
@@ -30,6 +31,7 @@ class BumperNoise:
     sticking: float = 0.0
 
     def __post_init__(self) -> None:
+        check_fields(self)
         if not 0 <= self.hold < np.inf:
             raise ConfigError(f"bumper noise hold {self.hold}: must be 0 s or more")
         if not 0 <= self.sticking <= 1:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from nomad_mj.errors import ConfigError
+from nomad_mj.option_types import check_fields
 from nomad_mj.tasks.bumpers import BumperNoise
 from nomad_mj.tasks.gyroscope import Gyroscope
 from nomad_mj.tasks.infrared import InfraredEffects
@@ -38,5 +39,6 @@ class MotorConfig:
     ends_at_goal: bool = True
 
     def __post_init__(self) -> None:
+        check_fields(self)
         if not self.goal_radius > 0:
             raise ConfigError(f"goal radius {self.goal_radius}: must be above 0 m")

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nomad_mj.errors import ConfigError
+from nomad_mj.option_types import check_fields
 from nomad_mj.types import FloatArray, IntArray
 
 _SLACK = 1e-6  # [rad]
@@ -36,6 +37,7 @@ class Crosstalk:
     reach: float = math.pi / 4
 
     def __post_init__(self) -> None:
+        check_fields(self)
         if not 0 <= self.probability <= 1:
             raise ConfigError(f"crosstalk probability {self.probability}: must be in [0, 1]")
         if not 0 < self.reach <= math.pi:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nomad_mj.errors import ConfigError
+from nomad_mj.option_types import check_fields
 from nomad_mj.scene import CONTROL_TIMESTEP
 
 _DEGREE = math.pi / 180
@@ -46,6 +47,7 @@ class Gyroscope:
     weight: float = 0.98
 
     def __post_init__(self) -> None:
+        check_fields(self)
         for name in ("angle_random_walk", "bias_instability"):
             if not 0 <= getattr(self, name) < math.inf:
                 raise ConfigError(f"gyroscope {name} {getattr(self, name)}: must be >= 0")

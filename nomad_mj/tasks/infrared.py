@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 
 from nomad_mj.errors import ConfigError
+from nomad_mj.option_types import check_fields
 from nomad_mj.robots import RobotDescription
 from nomad_mj.tasks.rings import ring_slices
 from nomad_mj.types import FloatArray, IntArray
@@ -41,6 +42,7 @@ class InfraredEffects:
     reference: float = 0.9
 
     def __post_init__(self) -> None:
+        check_fields(self)
         if not 0 < self.reference <= 1:
             raise ConfigError(f"infrared reference {self.reference}: must be in (0, 1]")
         if not self.rings:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from math import inf
+from numbers import Integral
 from typing import ClassVar, Literal, TypeAlias
 
 from nomad_mj.errors import ConfigError
@@ -17,7 +18,7 @@ _SHARED = {
 
 
 def _require_layers(hidden: tuple[int, ...]) -> None:
-    if not hidden or min(hidden) < 1:
+    if not hidden or any(not isinstance(units, Integral) or units < 1 for units in hidden):
         raise ConfigError(f"hidden {','.join(map(str, hidden))}: layers must have 1 unit or more")
 
 
@@ -61,7 +62,6 @@ class _OffPolicy:
     episode_decisions: int = 50
 
     def __post_init__(self) -> None:
-        _require_layers(self.hidden)
         require(
             self,
             **_SHARED,
@@ -71,6 +71,7 @@ class _OffPolicy:
             gradient_steps=(1, inf),
             tau=(0, 1),
         )
+        _require_layers(self.hidden)
 
 
 @dataclass(frozen=True)
@@ -140,7 +141,6 @@ class PpoSettings:
     episode_decisions: int = 50
 
     def __post_init__(self) -> None:
-        _require_layers(self.hidden)
         require(
             self,
             **_SHARED,
@@ -150,6 +150,7 @@ class PpoSettings:
             gae_lambda=(0, 1),
             spread=(TINY, inf),
         )
+        _require_layers(self.hidden)
 
 
 DeepSettings: TypeAlias = SacSettings | Td3Settings | PpoSettings

@@ -109,7 +109,8 @@ class ReactivePlannerConfig:
     def __post_init__(self) -> None:
         require(
             self,
-            **dict.fromkeys(("k_dist", "k_ind", "k_z", "k_sigma"), (0.0, MOST)),
+            **dict.fromkeys(("k_ind", "k_z", "k_sigma"), (0.0, MOST)),
+            k_dist=(TINY, MOST),
             **dict.fromkeys(("beta", "sigma_floor"), (TINY, MOST)),
             **dict.fromkeys(("xi", "epsilon"), (0.0, 1.0)),
             **dict.fromkeys(("alpha_reward", "alpha_penalty"), (0.0, 1.0)),
