@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 
 from nomad_mj.errors import ConfigError
+from nomad_mj.option_types import check_fields
 from nomad_mj.types import FloatArray, IntArray, RangeRing
 
 Order = Literal["sequential", "spread"]
@@ -33,6 +34,7 @@ class FiringOrder:
     order: Order = "sequential"
 
     def __post_init__(self) -> None:
+        check_fields(self)
         if not self.per_step >= 1:
             raise ConfigError(f"firing order per_step {self.per_step}: must be 1, 2, 3, ...")
         if self.order not in ("sequential", "spread"):
@@ -43,7 +45,9 @@ def turns(order: FiringOrder, ring: RangeRing) -> tuple[IntArray, int]:
     """Return when each cone fires, (C,), and in how many control steps all have fired once."""
     count = len(ring.bearings)
     period = -(-count // order.per_step)
-    around = np.argsort(np.argsort(np.mod(ring.bearings, 2 * np.pi), kind="stable"))
+    # Rounded: the last bit must not make the first cone the last one.
+    bearings = np.mod(np.round(ring.bearings, 9), 2 * np.pi)
+    around = np.argsort(np.argsort(bearings, kind="stable"))
     if order.order == "sequential":
         return around // order.per_step, period
     return around % period, period

@@ -7,10 +7,12 @@ from typing import Literal
 import numpy as np
 
 from nomad_mj.errors import ConfigError
+from nomad_mj.option_types import check_fields
 from nomad_mj.types import FloatArray, IntArray
 
 RangeNoiseKind = Literal["uniform", "gaussian", "none"]
 _BLOCK = 64  # control steps whose noise is drawn at once
+_LEAST = 1e-3  # factor: so that what hits nothing still reads the maximum
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,7 @@ class RangeNoise:
     specular_rings: tuple[str, ...] = ("sonar",)
 
     def __post_init__(self) -> None:
+        check_fields(self)
         if self.kind not in ("uniform", "gaussian", "none"):
             raise ConfigError(f"range noise {self.kind!r}: must be uniform, gaussian or none")
         if not 0 <= self.level < 1:
@@ -85,6 +88,7 @@ class OdometryNoise:
     heading_per_second: float = 0.0
 
     def __post_init__(self) -> None:
+        check_fields(self)
         for name in ("distance", "heading", "position"):
             if not 0 <= getattr(self, name) < math.inf:
                 raise ConfigError(f"odometry noise {name} {getattr(self, name)}: must be >= 0")
@@ -112,7 +116,7 @@ class RangeNoiseStream:
         self.next = _BLOCK if noise.kind != "none" and noise.level > 0 else -1
 
     def factors(self) -> FloatArray:
-        """Return the next factors, one a sensor, never negative."""
+        """Return the next factors, one a sensor, always above 0."""
         if self.next < 0:
             return self.block[0]
         if self.next == _BLOCK:  # one call of the generator serves many control steps
@@ -127,7 +131,7 @@ class RangeNoiseStream:
         if self._noise.kind == "uniform":
             self.block = self._rng.uniform(1 - level, 1 + level, self._shape)
         else:
-            self.block = np.maximum(self._rng.normal(1.0, level, self._shape), 0.0)
+            self.block = np.maximum(self._rng.normal(1.0, level, self._shape), _LEAST)
         self.next = 0
 
 

@@ -17,7 +17,7 @@ from typing_extensions import Self
 from nomad_mj.robots import PREFIX, RayIndex, RobotDescription
 from nomad_mj.types import FloatArray, IntArray
 
-_MISS = 1e6  # [m]
+MISS = 1e6  # [m]
 _NO_ECHO = -1.0  # what the engine reads where a ray hits nothing
 
 
@@ -100,14 +100,14 @@ class Readout:
         return values
 
     def cones(self, distances: FloatArray) -> FloatArray:
-        """Return each cone's shortest ray, (..., C) [m] from the perimeter; a miss: `_MISS`."""
+        """Return each cone's shortest ray, (..., C) [m] from the perimeter; a miss: `MISS`."""
         rays = self.rays
         # Read as whole numbers, the bits of floats have the same order, and negative ones come
         # last: one comparison for all that is too far, which the engine cuts to the maximum, and
         # for all that hits nothing.
         shortest = np.minimum.reduceat(distances.view(np.uint64), rays.first, -1)
         cones = shortest.view(np.float64) - rays.offset
-        np.copyto(cones, _MISS, where=shortest >= self._maximum)
+        np.copyto(cones, MISS, where=shortest >= self._maximum)
         return cones
 
     def bumpers(self, history: FloatArray) -> FloatArray:

@@ -1,13 +1,16 @@
 """What sonars suffer beside noise: turns, crosstalk, age and lost echoes."""
 
 from dataclasses import dataclass
+from numbers import Real
 
 import numpy as np
 
 from nomad_mj.errors import ConfigError
+from nomad_mj.option_types import check_fields
 from nomad_mj.robots import RobotDescription
 from nomad_mj.tasks.crosstalk import Crosstalk, Echoes, within_reach
 from nomad_mj.tasks.firing import FiringOrder, Stale, turns
+from nomad_mj.tasks.readout import MISS
 from nomad_mj.tasks.rings import ring_slices
 from nomad_mj.types import FloatArray
 
@@ -41,10 +44,11 @@ class SonarEffects:
     dropout: float = 0.0
 
     def __post_init__(self) -> None:
+        check_fields(self)
         if not 0 <= self.dropout <= 1:
             raise ConfigError(f"sonar dropout {self.dropout}: must be in [0, 1]")
         for limit in self.limits:
-            if limit is not None and not limit > 0:
+            if limit is not None and not (isinstance(limit, Real) and limit > 0):
                 raise ConfigError(f"sonar limits: {limit} must be above 0 m, or None")
         if not self.rings:
             raise ConfigError("sonar effects: need a ring in rings")
@@ -110,7 +114,7 @@ class Sonars:
         ranges : array (C,)
             How far from the perimeter the obstacles are [m]; beyond the maximum: nothing there.
         """
-        ranges = np.where(ranges > self._limits, np.maximum(ranges, self._maximum), ranges)
+        ranges = np.where(ranges > self._limits, MISS, ranges)
         if not self._chance:
             return ranges
         listens = self._crosstalk_rng.random(len(ranges)) < self._chance

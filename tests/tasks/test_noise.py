@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nomad_mj import load
 from nomad_mj.errors import ConfigError
 from nomad_mj.tasks import OdometryNoise, RangeNoise
 from nomad_mj.tasks.noise import RangeNoiseKind, RangeNoiseStream
@@ -174,3 +175,13 @@ def test_positions_err_anew_at_each_reading_within_the_bound_and_do_not_add_up()
     np.testing.assert_allclose(off.std(axis=0), 2 / math.sqrt(3), rtol=0.05)
     assert abs(np.corrcoef(off.T)[0, 1]) < 0.08
     assert (readings[:, 2:] == 0).all()
+
+
+@pytest.mark.parametrize("level", [0.3, 0.9])
+def test_what_hits_nothing_reads_the_maximum_however_the_factors_fall(level: float) -> None:
+    options = {"range_noise": RangeNoise("gaussian", level), "random": 0}
+    with load("motor", "empty_room", task_kwargs=options) as env:
+        env.reset(seed=0, start=(5.0, 5.0))
+        for _ in range(300):
+            infrared = env.step(np.zeros(3)).observation["infrared"]
+            assert (infrared == 0.6).all()

@@ -233,3 +233,10 @@ def test_what_makes_no_sense_is_refused(make: Callable[[], object], told: str) -
     with pytest.raises(ConfigError) as caught:
         make()
     assert str(caught.value) == told
+
+
+def test_the_last_bit_of_a_bearing_does_not_make_the_first_cone_the_last() -> None:
+    bearings = np.arange(16) * np.pi / 8
+    for tiny in (0.0, 1e-17, -1e-17, -1e-12):
+        ring = RangeRing("sonar", (tiny, *bearings[1:].tolist()), 0.26, 0.0, 6.5)
+        assert turns(FiringOrder(4), ring)[0].tolist() == [k // 4 for k in range(16)]
