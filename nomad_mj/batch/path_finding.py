@@ -133,9 +133,9 @@ class BatchPathFinding(BatchEnvironment):
         if over.any():
             self._begin(chosen[over])
         for world, move in asked.items():
-            bumped = bool(self.worlds.bumpers[world].any())
+            bumped = int(np.count_nonzero(self.worlds.bumpers[world]))
             odometry = self.worlds.odometry[world].tolist()
-            touched = bool(self.worlds.touched[world].any())
+            touched = int(np.count_nonzero(self.worlds.touched[world]))
             driving = Driving(move, self._robot, self._lookout.motion, odometry, bumped, touched)
             self._moves[world] = _Underway(driving, move, goals[world].copy())
 
@@ -179,8 +179,8 @@ class BatchPathFinding(BatchEnvironment):
             self._moves.clear()
             raise
         nearest = np.minimum.reduce(worlds.ranges[chosen], axis=1).tolist()
-        bumped = np.logical_or.reduce(worlds.bumpers[chosen], axis=1).tolist()
-        touched = np.logical_or.reduce(worlds.touched[chosen], axis=1).tolist()
+        bumped = np.count_nonzero(worlds.bumpers[chosen], axis=1).tolist()
+        touched = np.count_nonzero(worlds.touched[chosen], axis=1).tolist()
         for world, *told in zip(going, nearest, bumped, touched, strict=True):
             travel, odometry = worlds.tasks[world].travel, worlds.odometry[world].tolist()
             self._moves[world].driving.take_in(travel, odometry, *told)

@@ -129,8 +129,8 @@ class Driving:
         How carefully to move, as of a `Lookout`.
     odometry : sequence of float, length 4
         As observed.
-    bumped, touched : bool
-        Whether a bumper reports a touch already; whether one is truly touched.
+    bumped, touched : int
+        How many bumpers report a touch already; how many are truly touched.
     """
 
     def __init__(
@@ -139,8 +139,8 @@ class Driving:
         robot: RobotDescription,
         motion: MotionConfig,
         odometry: Sequence[float],
-        bumped: bool,
-        touched: bool,
+        bumped: int,
+        touched: int,
     ) -> None:
         x, y = move.tolist()
         self._travel = _facing(Travel(0.0, 0.0, 0.0, 0.0), odometry)
@@ -151,7 +151,8 @@ class Driving:
             motion,
             CONTROL_TIMESTEP,
         )
-        self._bumped, self._touched, self._contact = bumped, touched, False
+        self._bumped, self._touched = bumped, touched
+        self._new_bump = self._contact = False
         self._clearance = math.inf  # until the move is under way
         self._driven, self._ticks = 0.0, 0
 
@@ -168,7 +169,7 @@ class Driving:
         free : float
             Shortest reading ahead, by the `Lookout` [m].
         """
-        command = self._move.command(self._travel, free, self._bumped)
+        command = self._move.command(self._travel, free, self._new_bump)
         return None if self._move.done else command
 
     def take_in(
@@ -176,16 +177,18 @@ class Driving:
         travel: Travel,
         odometry: Sequence[float],
         nearest: float,
-        bumped: bool,
-        touched: bool,
+        bumped: int,
+        touched: int,
     ) -> None:
         """Take in a control step: its way, the odometry, the shortest reading [m], contacts.
 
-        `bumped` is what the bumpers report and the move heeds; what is counted is `touched`.
+        `bumped` is how many bumpers report a touch, which the move heeds if there are more of
+        them; `touched` how many are truly touched, which counts.
         """
         self._travel = travel = _facing(travel, odometry)
         # What was touched before the move, and still is, is no contact of this move.
-        self._contact |= touched and not self._touched
+        self._contact |= touched > self._touched
+        self._new_bump = bumped > self._bumped
         self._bumped, self._touched = bumped, touched
         self._clearance = min(self._clearance, nearest)
         self._driven += math.hypot(travel.forward, travel.sideways)

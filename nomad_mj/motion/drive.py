@@ -43,7 +43,8 @@ class Move(ABC):
         free : float
             Shortest reading ahead, that is about `motion_heading` [m].
         bumped : bool
-            Whether a bumper was touched since the last call.
+            Whether a bumper has been touched since the last call that was not before: what is
+            touched already may be what the move leads away from.
         """
 
 

@@ -12,6 +12,7 @@ from nomad_mj.types import MotionLimits
 
 _TURNED = math.radians(0.25)  # the robot drives where it should
 _ARRIVED = 0.004  # [m] left to go
+_CLEAR = 0.1  # [m] back from a contact; sooner the same bumper may close again
 _STILL = 0.02  # [m/s], [rad/s]
 _HOLD_GAIN = 4.0  # [1/s] with which the direction is held
 
@@ -87,9 +88,9 @@ class StraightMove:
         self._limits, self._config, self._timestep = limits, config, timestep
         self._phase = _Phase.TURN if turns_first else _Phase.DRIVE
         self._speed = self._turn_speed = 0.0
-        self._travelled = self._to_retract = 0.0
+        self._travelled = self._to_retract = self._ended_at = 0.0
         self._elapsed = elapsed
-        self._turned, self._touching = not turns_first, False
+        self._turned = not turns_first
         self.motion_heading = heading
         self.outcome = Outcome.NONE
         self.done = False
@@ -108,7 +109,7 @@ class StraightMove:
         free : float
             Shortest reading ahead, that is about `motion_heading` [m].
         bumped : bool
-            Whether a bumper was touched since the last call.
+            Whether a bumper has been touched since the last call that was not before.
         """
         self._elapsed += self._timestep
         self._travelled += self._sign * distance
@@ -123,9 +124,7 @@ class StraightMove:
 
     def _judge(self, free: float, bumped: bool, distance: float) -> None:
         """Decide whether the present phase has come to its end."""
-        # A contact that was there before the robot moved is not this move's, which may end it.
-        touched, self._touching = bumped and not self._touching, bumped
-        if self._phase is _Phase.DRIVE and touched:
+        if self._phase is _Phase.DRIVE and bumped:
             self._end(Outcome.BUMPED)
         elif self._phase is _Phase.DRIVE:
             if free < self._config.security_distance:
@@ -134,7 +133,8 @@ class StraightMove:
                 self._end(Outcome.MOVED)
         elif self._phase is _Phase.RETRACT:
             left = self._travelled - self._to_retract
-            if left <= _ARRIVED or free < self._config.security_distance + _ARRIVED:
+            backed = self._ended_at - self._travelled > _CLEAR and bumped
+            if backed or left <= _ARRIVED or free < self._config.security_distance + _ARRIVED:
                 self._phase = _Phase.STOP
         if self._elapsed >= self._config.time_out and self._phase is not _Phase.STOP:
             if self.outcome is Outcome.NONE:
@@ -149,6 +149,7 @@ class StraightMove:
         self._phase = _Phase.STOP
         if outcome is not Outcome.MOVED:
             self._phase = _Phase.RETRACT
+            self._ended_at = self._travelled
             self._to_retract = self._travelled - self._config.retract
             if not self._reverses:  # there it has just been
                 self._to_retract = max(self._to_retract, 0.0)

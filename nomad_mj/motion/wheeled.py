@@ -107,6 +107,8 @@ class _DifferentialMove(Move):
         config: MotionConfig,
         timestep: float,
     ) -> None:
+        if drive.axle:
+            heading, length = _from_axle(drive, heading, length, travel.heading)
         self.straight = StraightMove(
             heading,
             length,
@@ -121,6 +123,21 @@ class _DifferentialMove(Move):
     def command(self, travel: Travel, free: float, bumped: bool) -> tuple[float, ...]:
         speed, turn = self.straight.command(travel.forward, travel.heading, free, bumped)
         return self._drive.twist(speed, 0.0, turn, travel)
+
+
+def _from_axle(
+    drive: WheeledDrive, heading: float, length: float, facing: float
+) -> tuple[float, float]:
+    """Return direction and length of the move that takes the robot's origin where it should be.
+
+    It turns about the middle of its axle, so that its origin swings round first.
+    """
+    along = length * math.cos(heading) + drive.axle * math.cos(facing)
+    across = length * math.sin(heading) + drive.axle * math.sin(facing)
+    heading = math.atan2(across, along)
+    ahead = abs(math.remainder(heading - facing, 2 * math.pi)) <= math.pi / 2
+    swing = drive.axle if ahead or not drive.sees_behind else -drive.axle
+    return heading, max(math.hypot(along, across) - swing, 0.0)
 
 
 class _OmniMove(Move):

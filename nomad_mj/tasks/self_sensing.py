@@ -32,8 +32,8 @@ class SelfSensing:
     ----------
     travel : Travel
         What the encoders tell of this control step, without drift.
-    touched : bool
-        Whether a bumper is truly touched, whatever it reports.
+    touched : int
+        How many bumpers are truly touched, whatever they report.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class SelfSensing:
             self._gyroscope = GyroscopeStream(config.gyroscope, start.heading, rng)
         self._odometry = Odometry(start, config.odometry_noise, odometry, weight)
         self.travel = Travel(0.0, 0.0, start.heading, start.heading)
-        self.touched = False
+        self.touched = 0
 
     def reckon(
         self, encoders: Sequence[float], pose: Callable[[], Pose]
@@ -80,5 +80,5 @@ class SelfSensing:
 
     def tell_bumpers(self, bumpers: FloatArray) -> FloatArray:
         """Return what the bumpers report, (B,) 0 or 1, given which are touched."""
-        self.touched = bool(np.count_nonzero(bumpers))
+        self.touched = int(np.count_nonzero(bumpers))
         return bumpers if self._bumpers is None else self._bumpers.tell(bumpers)

@@ -110,6 +110,43 @@ def test_what_is_touched_from_the_beginning_is_no_contact_of_the_move(
         assert driving.result().contact == contact
 
 
+@pytest.mark.parametrize("robot", ["nomad200", "pioneer", "omnibot", "racer"])
+@pytest.mark.parametrize(("pressed", "outcome"), [(1, Outcome.MOVED), (2, Outcome.BUMPED)])
+def test_only_one_more_bumper_ends_a_move_that_began_at_a_contact(
+    robot: str, pressed: int, outcome: Outcome
+) -> None:
+    with load(robot=robot) as made:
+        own, motion = made.scene.robot, Lookout(made.scene.robot.layout, MotionConfig()).motion
+    driving = Driving(np.array([0.5, 0.0]), own, motion, (0, 0, 0, 0), 1, 1)
+    slow = own.drive.limits.translate * 0.05 / 4
+    for tick in range(400):
+        if driving.command(5.0) is None:
+            break
+        way = slow if driving.result().outcome is Outcome.NONE else 0.0
+        more = pressed if 8 <= tick < 12 else 1
+        driving.take_in(Travel(way, 0.0, 0.0, 0.0), (0, 0, 0, 0), 5.0, more, more)
+    assert driving.result().outcome is outcome
+    assert driving.result().contact == (pressed == 2)
+
+
+@pytest.mark.parametrize("robot", ["omnibot", "pioneer"])
+def test_a_robot_at_a_wall_gets_away_from_it(robot: str) -> None:
+    with load("path_finding", "empty_room", robot, {"random": 0}) as env:
+        env.reset(seed=0, start=(5.0, 5.0))
+        x0, _, _, _ = env.scene.shown_bounds
+        place = x0 + 0.2 + env.scene.robot.layout.radius + 0.001
+        env.motor.task.start_next_at((place + 0.1, 5.0, math.pi))
+        env.reset()
+        for _ in range(60):  # against the wall behind its back
+            env.motor.step(env.scene.robot.drive.twist(0.2, 0.0, 0.0, env.motor.task.travel))
+        assert env.motor.task.bumpers.any()
+        goal = env.motor.task.goal - env.motor.task.odometry[:2]
+        assert goal[0] > 0
+        step = env.step((1.0, 0.0))
+        assert step.observation["outcome"] == Outcome.MOVED, step.observation
+        assert step.observation["driven"] > 0.5
+
+
 def test_what_is_done_to_an_observation_changes_nothing(env: PathFinding) -> None:
     ends: list[FloatArray] = []
     for spoil in (False, True):

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -100,9 +101,10 @@ class _Driver:
         dx, dy = self._to_go(x, y)
         travel = self.travel._replace(forward=0.0, sideways=0.0)
         config = MotionConfig(time_out=_PATIENCE)
-        move = self.drive.move(
-            math.atan2(dy, dx), math.hypot(dx, dy), travel, config, CONTROL_TIMESTEP
-        )
+        drive = self.drive  # to which the centre of turning is its origin here
+        if isinstance(drive, WheeledDrive):
+            drive = replace(drive, axle=0.0)
+        move = drive.move(math.atan2(dy, dx), math.hypot(dx, dy), travel, config, CONTROL_TIMESTEP)
         while True:
             command = move.command(travel, math.inf, False)
             if move.done:
