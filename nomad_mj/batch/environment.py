@@ -39,7 +39,7 @@ class BatchEnvironment(ABC):
         if not time_limit > 0:
             raise ConfigError(f"time limit {time_limit}: must be above 0 s")
         self.worlds = worlds
-        self._time_limit = time_limit
+        self._time_limit, self._closed = time_limit, False
         self._type = np.full(worlds.count, LAST, dtype=np.int64)
         self._reward, self._discount = np.full((2, worlds.count), np.nan)
 
@@ -101,8 +101,12 @@ class BatchEnvironment(ABC):
         Raises
         ------
         StartError
-            A start that cannot be, naming the world; nothing has been reset then.
+            A start that cannot be, naming the world; nothing has been reset then. Or what moves in
+            a world has found no place: then other episodes begin in all of these at the next step.
+        RuntimeError
+            The environment has been closed.
         """
+        self._refuse_closed()
         chosen = self.worlds.chosen(mask)
         seeds = self.worlds.seeds(seed)
         if starts is not None:
@@ -129,12 +133,14 @@ class BatchEnvironment(ABC):
 
     def time_step(self) -> BatchTimeStep:
         """Return the present time step of every world, copied."""
+        self._refuse_closed()
         return BatchTimeStep(
             self._type.copy(), self._reward.copy(), self._discount.copy(), self._observe()
         )
 
     def _check_actions(self, actions: Any, size: int) -> FloatArray:
         """Return the actions as an array (N, size)."""
+        self._refuse_closed()
         given = np.asarray(actions, dtype=np.float64)
         if given.shape != (self.count, size):
             raise ValueError(
@@ -142,8 +148,13 @@ class BatchEnvironment(ABC):
             )
         return given
 
+    def _refuse_closed(self) -> None:
+        if self._closed:
+            raise RuntimeError("the environment has been closed: load another one")
+
     def close(self) -> None:
         """Free all simulations; they cannot be used any more."""
+        self._closed = True
         self.worlds.close()
 
     def __enter__(self) -> Self:

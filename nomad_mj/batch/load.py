@@ -74,7 +74,7 @@ def load_batch(
         The same for all.
     task_kwargs, environment_kwargs : mapping, optional
         As of `load`. With ``random`` s, world i is the single environment of seed s + i; with a
-        SeedSequence that of its child i.
+        SeedSequence that of its child i; with a list that of its i-th.
     goal : (float, float) or sequence of these, optional
         Where the goal is [m], in place of the rooms' own: one for all, or as many as worlds, None
         for a room's own.
@@ -87,7 +87,7 @@ def load_batch(
         Anything wrong with these, in one line.
     """
     options = read_options(task_name, task_kwargs, environment_kwargs)
-    rooms = [room] if isinstance(room, str | Path) else list(room)
+    rooms = [room] if isinstance(room, str | Path) else _listed("room", room)
     if not rooms:
         raise ConfigError("room: the list of rooms is empty; name one at least")
     worlds = _whole("count", len(rooms) if count is None else count)
@@ -103,11 +103,11 @@ def _scenes(
     options: LoadOptions, rooms: Sequence[str | Path], robot: str | Path, goals: Sequence[Goal]
 ) -> list[Scene]:
     """Return the scene of each world; worlds that are alike share theirs."""
-    made: dict[tuple[str, tuple[float, ...] | None], Scene] = {}
+    made: dict[tuple[str, str | None], Scene] = {}
     scenes: list[Scene] = []
     for world, goal in enumerate(goals):
         room = rooms[world % len(rooms)]
-        key = str(room), None if goal is None else tuple(goal)
+        key = str(room), None if goal is None else str(list(goal))
         if key not in made:
             made[key] = options.build_scene(room, robot, goal)
         scenes.append(made[key])
@@ -118,12 +118,19 @@ def _goals(goal: Goals, worlds: int) -> list[Goal]:
     """Return the goal of each world, given one for all or one for each."""
     if goal is None:
         return [None] * worlds
-    given: list[Any] = list(goal)
+    given = _listed("goal", goal)
     if all(isinstance(number, int | float | np.number) for number in given):
         return [given] * worlds
     if len(given) != worlds:
         raise ConfigError(f"goal: there are {len(given)}, but {worlds} worlds; give one for each")
     return given
+
+
+def _listed(name: str, given: Any) -> list[Any]:
+    """Return what is given for each world as a list; raise ConfigError if it is none."""
+    if isinstance(given, str) or not isinstance(given, Sequence | np.ndarray):
+        raise ConfigError(f"{name} {given!r}: must be one for all worlds, or a list of these")
+    return list(given)
 
 
 def _whole(name: str, value: Any) -> int:

@@ -35,8 +35,8 @@ class Worlds:
         One a world, of the same robot.
     config : MotorConfig
         Options of the motor task.
-    random : int, SeedSequence or None
-        See `world_seed`.
+    random : int, SeedSequence, sequence of these or None
+        See `world_seed`; or one for each world.
     threads : int
         To run on.
 
@@ -54,14 +54,12 @@ class Worlds:
         The other observations, as of `MotorTask`.
     """
 
-    def __init__(
-        self, scenes: list[Scene], config: MotorConfig, random: Seed, threads: int
-    ) -> None:
+    def __init__(self, scenes: list[Scene], config: MotorConfig, random: Any, threads: int) -> None:
         first = scenes[0]
         self.count = len(scenes)
         self.tasks = [
-            MotorTask(scene, config, world_seed(random, world))
-            for world, scene in enumerate(scenes)
+            MotorTask(scene, config, seed)
+            for scene, seed in zip(scenes, self.seeds(random), strict=True)
         ]
         self._nurseries = {id(scene): _nursery(scene, config) for scene in scenes}
         self._simulations = Simulations(scenes, config, threads)
@@ -118,12 +116,21 @@ class Worlds:
             raise StartError(f"world {world}: {error}") from None
 
     def reset(self, worlds: IntArray) -> None:
-        """Begin an episode in each of some worlds (n,)."""
+        """Begin an episode in each of some worlds (n,).
+
+        Raises
+        ------
+        StartError
+            Where what moves finds no place, naming the world. All of these must be reset then.
+        """
         for world in worlds.tolist():
             task = self.tasks[world]
             nursery = self._nurseries[id(task.scene)]
-            with nursery.reset_context():
-                task.initialize_episode(nursery)
+            try:
+                with nursery.reset_context():
+                    task.initialize_episode(nursery)
+            except StartError as error:
+                raise StartError(f"world {world}: {error}") from None
             told = task.get_observation(nursery)
             self._simulations.take(world, nursery)
             self.touched[world] = nursery.bumpers()
@@ -224,7 +231,7 @@ class Worlds:
             given = []
         if len(given) != self.count:
             raise ConfigError(
-                f"seed: must be a whole number, or one for each of {self.count} worlds"
+                f"seed {seed!r}: must be a whole number, or one for each of {self.count} worlds"
             )
         return [None if each is None else seed_sequence(each) for each in given]
 

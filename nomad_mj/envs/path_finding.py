@@ -118,6 +118,7 @@ class PathFinding(dm_env.Environment):
         self, seed: int | np.random.SeedSequence | None = None, start: Start = None
     ) -> dm_env.TimeStep:
         """Start a new episode; arguments and errors as of `MotorEnvironment.reset`."""
+        self._over = True  # should it be refused
         told = self.motor.reset(seed, start).observation
         self._over = False
         self._ticks = 0
@@ -154,7 +155,7 @@ class PathFinding(dm_env.Environment):
         """Drive a displacement (2,) [m]."""
         motor, lookout = self.motor, self._lookout
         task = motor.task
-        bumped = bool(np.count_nonzero(task.bumpers))
+        bumped = int(np.count_nonzero(task.bumpers))
         driving = Driving(
             move, self.scene.robot, lookout.motion, task.odometry, bumped, task.own.touched
         )
@@ -169,7 +170,7 @@ class PathFinding(dm_env.Environment):
                 self._over = True
                 raise
             self._ticks += 1
-            bumped = bool(np.count_nonzero(task.bumpers))
+            bumped = int(np.count_nonzero(task.bumpers))
             nearest = float(np.minimum.reduce(task.ranges))
             driving.take_in(task.travel, task.odometry, nearest, bumped, task.own.touched)
             if self.on_control_step is not None:

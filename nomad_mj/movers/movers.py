@@ -17,9 +17,9 @@ ROBOT_GAP = 0.10
 """What an obstacle keeps from the robot, and from where it would stand at the goal [m]."""
 
 START_GAP = 0.5
-_TRIED = 4  # starts, when a room is loaded
 """What an obstacle keeps from the robot when an episode starts [m]."""
 
+_TRIED = 4  # starts, when a room is loaded
 _MOST_BATCHES = 100
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import dm_env
 import numpy as np
 from dm_control.rl import control
+from dm_control.rl.control import PhysicsError
 from dm_env import specs
 
 from nomad_mj.errors import ConfigError
@@ -47,6 +48,8 @@ class MotorEnvironment(control.Environment):
             control_timestep=CONTROL_TIMESTEP,
             flat_observation=flat_observation,
         )
+        self._action_shape = task.motor_spec().shape
+        self._closed = False
 
     def reset(
         self, seed: int | np.random.SeedSequence | None = None, start: Start = None
@@ -64,14 +67,45 @@ class MotorEnvironment(control.Environment):
         Raises
         ------
         StartError, UnknownNameError
-            See `starts.resolve_start`.
+            See `starts.resolve_start`; a StartError also where obstacles that move find no place.
+            The next step, or reset, begins another episode then.
+        RuntimeError
+            The environment has been closed.
         """
+        self._refuse_closed()
         sequence = None if seed is None else seed_sequence(seed)  # refused, it leaves no trace
         if start is not None:
             self.task.start_next_at(start)
         if sequence is not None:
             self.task.seed(sequence)
-        return super().reset()
+        try:
+            return super().reset()
+        except BaseException:
+            self._reset_next_step = True  # the robot is nowhere
+            raise
+
+    def step(self, action: Any) -> dm_env.TimeStep:
+        """Do a control step; begin a new episode if the last one is over.
+
+        Raises
+        ------
+        ValueError
+            An action that is not one finite number for each motor.
+        PhysicsError
+            The simulation diverged. The next step begins a new episode.
+        """
+        self._refuse_closed()
+        if self._reset_next_step:
+            return self.reset()
+        action = np.asarray(action, dtype=np.float64)
+        if action.shape != self._action_shape or not math.isfinite(sum(action.tolist())):
+            (count,) = self._action_shape
+            raise ValueError(f"action {action}: must be {count} finite numbers, one for each motor")
+        try:
+            return super().step(action)
+        except PhysicsError:
+            self._reset_next_step = True
+            raise
 
     def advance(self, command: Any) -> None:
         """Do a control step of an episode that nothing ends, without a time step: see `told`.
@@ -110,6 +144,11 @@ class MotorEnvironment(control.Environment):
         name = control.FLAT_OBSERVATION_KEY
         return OrderedDict([(name, specs.Array((size,), np.float64, name=name))])
 
+    def _refuse_closed(self) -> None:
+        if self._closed:
+            raise RuntimeError("the environment has been closed: load another one")
+
     def close(self) -> None:
-        """Free the simulation and its OpenGL contexts."""
+        """Free the simulation and its OpenGL contexts; more than once does no harm."""
+        self._closed = True
         self.physics.free()

@@ -16,7 +16,7 @@ from nomad_mj.tasks.physics import NavigationPhysics, Placeable, Posed
 from nomad_mj.tasks.ranging import Ranging
 from nomad_mj.tasks.seeds import seed_sequence
 from nomad_mj.tasks.self_sensing import SelfSensing
-from nomad_mj.tasks.starts import Start, resolve_start
+from nomad_mj.tasks.starts import Start, resolve_start, start_movers
 from nomad_mj.types import FloatArray, Travel
 
 REWARD_MARGIN = 5.0  # [m] from the goal at which the reward has fallen to 0.1
@@ -114,12 +114,13 @@ class MotorTask(control.Task):
         self.random = free
         wanted, self._start = self._start, None  # of this episode, even if it fails
         start = resolve_start(self.scene, wanted, choice)
-        if self.movers is not None and physics is not None:
-            self.movers.start(start[:2], *moving)
-            self._show(self.movers, physics)
         if physics is not None:
+            self._episode += 1  # also if it is refused: the next one is another
+            if self.movers is not None:
+                again = choice if wanted is None else None
+                start = start_movers(self.movers, self.scene, start, again, *moving)
+                self._show(self.movers, physics)
             physics.place(start)
-            self._episode += 1
         self.ranging.start(ranges, *streams[6:8])
         robot = self.scene.robot
         self.own = SelfSensing(robot, self.config, start, odometry, *streams[8:])
@@ -243,5 +244,6 @@ class MotorTask(control.Task):
 
     def get_termination(self, physics: NavigationPhysics) -> float | None:
         """Return discount 0 at the goal, else None: the episode goes on."""
-        ends = self.config.ends_at_goal and self.ends_at(self.goal_distance(physics))
-        return 0.0 if ends else None
+        if not self.config.ends_at_goal:  # and the distance need not be known
+            return None
+        return 0.0 if self.ends_at(self.goal_distance(physics)) else None

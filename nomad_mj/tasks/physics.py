@@ -98,6 +98,7 @@ class NavigationPhysics(Physics):
             "_qpos",
             "_ctrl",
             "_mocap_pos",
+            "_near",
         ):  # they would keep the memory alive
             vars(self).pop(name, None)
 

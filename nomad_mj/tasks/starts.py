@@ -1,5 +1,6 @@
 """Where an episode starts: a start of the room's, or a pose of the user's that is checked."""
 
+import math
 from collections.abc import Sequence
 from typing import TypeAlias
 
@@ -7,9 +8,12 @@ import numpy as np
 import shapely
 
 from nomad_mj.errors import StartError, UnknownNameError
+from nomad_mj.movers import Movers
 from nomad_mj.scene import Scene
 from nomad_mj.types import Pose
 
+_TURNS = 100.0  # [rad]
+_TRIED = 20  # starts at which moving obstacles find no place
 Start: TypeAlias = "str | int | Sequence[float] | None"
 
 
@@ -42,10 +46,56 @@ def resolve_start(scene: Scene, start: Start, rng: np.random.Generator) -> Pose:
             raise UnknownNameError("start", start, arena.start_names)
         return Pose(*arena.starts[arena.start_names.index(start)].tolist())
     if isinstance(start, int | np.integer):
-        if not 0 <= start < len(arena.starts):
+        if isinstance(start, bool) or not 0 <= start < len(arena.starts):
             raise StartError(f"start {start}: the room's are numbered 0 to {len(arena.starts) - 1}")
         return Pose(*arena.starts[start].tolist())
     return _check(scene, start)
+
+
+def start_movers(
+    movers: Movers,
+    scene: Scene,
+    start: Pose,
+    choice: np.random.Generator | None,
+    obstacles: np.random.Generator,
+    goal: np.random.Generator,
+) -> Pose:
+    """Let what moves begin an episode; return where the robot starts.
+
+    Parameters
+    ----------
+    movers, scene
+        What moves, and where.
+    start : Pose
+        Where the robot is to start.
+    choice : Generator, optional
+        Chooses another of the room's starts where the obstacles find no place; None: it must be
+        this one.
+    obstacles, goal : Generator
+        Streams of what moves.
+
+    Raises
+    ------
+    StartError
+        There is no place for one of the obstacles.
+    """
+    if choice is not None:
+        for _ in range(_TRIED):
+            if _find_places(movers, start, obstacles, goal):
+                return start
+            start = resolve_start(scene, None, choice)
+    movers.start(start[:2], obstacles, goal)
+    return start
+
+
+def _find_places(
+    movers: Movers, start: Pose, obstacles: np.random.Generator, goal: np.random.Generator
+) -> bool:
+    try:
+        movers.start(start[:2], obstacles, goal)
+    except StartError:
+        return False
+    return True
 
 
 def _check(scene: Scene, start: Sequence[float]) -> Pose:
@@ -56,7 +106,11 @@ def _check(scene: Scene, start: Sequence[float]) -> Pose:
     if values.shape not in ((2,), (3,)) or not np.isfinite(values).all():
         given = " ".join(str(start).split())
         raise StartError(f"start {given}: must be (x, y) or (x, y, heading) in metres and radians")
-    pose = Pose(*values.tolist(), *([0.0] if len(values) == 2 else []))
+    x, y, *turned = values.tolist()
+    heading = turned[0] if turned else 0.0
+    if abs(heading) > _TURNS:  # numbers so large have lost their last digits
+        heading = math.remainder(heading, 2 * math.pi)
+    pose = Pose(x, y, heading)
     radius = scene.robot.layout.radius
     where = f"start ({pose.x:g}, {pose.y:g})"
     clearance = float(scene.plan.clearance(values[:2], radius))

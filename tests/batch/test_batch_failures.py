@@ -7,7 +7,8 @@ import pytest
 from dm_control.rl.control import PhysicsError
 from identity import check_same, singles
 
-from nomad_mj import NomadError, load_batch
+from nomad_mj import NomadError, load, load_batch
+from nomad_mj.errors import ConfigError
 
 
 @pytest.mark.parametrize("rooms", [["paper_room"], ["paper_room", "hall"]])
@@ -69,3 +70,22 @@ def test_what_cannot_be_loaded_is_told_in_one_line(options: dict[str, Any], says
     with pytest.raises(NomadError) as caught:
         load_batch(**options)
     assert says in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_after_close_every_call_says_so() -> None:
+    many = load_batch("motor", 2)
+    many.reset()
+    many.close()
+    for call in (many.reset, many.time_step, lambda: many.step(np.zeros((2, 3)))):
+        with pytest.raises(RuntimeError, match="has been closed"):
+            call()
+
+
+def test_a_seed_for_each_world_can_be_loaded() -> None:
+    with load_batch("motor", 2, task_kwargs={"random": [5, 6]}) as many:
+        seen = many.reset().observation["sonar"]
+    for seed, row in zip((5, 6), seen, strict=True):
+        with load("motor", task_kwargs={"random": seed}) as single:
+            np.testing.assert_array_equal(row, single.reset().observation["sonar"])
+    with pytest.raises(ConfigError, match="one for each of 3 worlds"):
+        load_batch("motor", 3, task_kwargs={"random": [5, 6]})

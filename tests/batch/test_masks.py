@@ -113,7 +113,7 @@ def test_seeds_of_worlds_are_those_of_single_environments() -> None:
         ("reset", {"starts": ["x", 0, 0]}, "world 0: unknown start 'x'; there are"),
         ("reset", {"starts": [0]}, "starts: there are 1, but 3 worlds"),
         ("reset", {"seed": -3}, "seed -3: must be a whole number"),
-        ("reset", {"seed": [1, 2]}, "seed: must be a whole number, or one for each of 3"),
+        ("reset", {"seed": [1, 2]}, "seed [1, 2]: must be a whole number, or one for each of 3"),
         ("reset", {"seed": [50, -1, 7], "starts": [1, 1, 1]}, "seed -1: must be a whole number"),
         ("reset", {"mask": [True]}, "mask: must be 3 times True or False"),
         ("step", {"actions": np.zeros((3, 2)), "mask": [1, 0, 0]}, "mask: must be 3 times True"),

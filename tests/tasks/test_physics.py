@@ -66,20 +66,16 @@ def test_step_by_step_is_the_same_as_many_at_once() -> None:
     env.close()
 
 
-@pytest.mark.parametrize("what", ["position", "velocity", "command"])
+@pytest.mark.parametrize("what", ["position", "velocity"])
 def test_a_simulation_that_diverges_says_so_and_can_be_reset(what: str) -> None:
     env = started()
-    action = np.zeros(3)
     if what == "position":
         env.physics.data.qpos[0] = np.nan
-    elif what == "velocity":
-        env.physics.data.qvel[0] = 1e12
     else:
-        action[1] = np.nan
+        env.physics.data.qvel[0] = 1e12
     with pytest.raises(PhysicsError, match=r"^the simulation diverged at 0\.\d+ s: mjWARN_BAD"):
-        env.step(action)
-    with pytest.raises(PhysicsError):
         env.step(np.zeros(3))
+    assert env.step(np.zeros(3)).first()
     before = env.reset(seed=0, start=0).observation
     assert np.isfinite(env.step((0.1, 0, 0)).observation["odometry"]).all()
     fresh = load("motor").reset(seed=0, start=0).observation

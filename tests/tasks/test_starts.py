@@ -128,3 +128,36 @@ def test_a_start_serves_one_episode_only(env: MotorEnvironment) -> None:
 def test_a_seed_that_is_none_is_refused(env: MotorEnvironment, seed: Any) -> None:
     with pytest.raises(NomadError, match=r"^seed .*: must be a whole number from 0 on$"):
         env.reset(seed=seed)
+
+
+@pytest.mark.parametrize("start", [True, False])
+def test_true_and_false_are_no_numbers_of_starts(start: bool) -> None:
+    with pytest.raises(StartError, match=f"start {start}"):
+        resolve(start)
+
+
+def test_a_heading_of_many_turns_is_told_as_one(env: MotorEnvironment) -> None:
+    step = env.reset(seed=0, start=(5.0, 3.3, 1000 * math.pi + 0.5))
+    assert step.observation["odometry"][2] == pytest.approx(0.5)
+    env.reset(seed=0, start=(5.0, 3.3, 1e17))
+    assert abs(env.step(np.zeros(3)).observation["odometry"][2]) <= math.pi
+
+
+@pytest.mark.parametrize("action", [0.3, [0.3], [0.0, np.nan, 0.0], [0.0, np.inf, -np.inf]])
+def test_an_action_is_a_finite_number_for_each_motor(env: MotorEnvironment, action: Any) -> None:
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match="must be 3 finite numbers, one for each motor"):
+        env.step(action)
+    assert env.step(np.zeros(3)).mid(), "nothing has happened"
+
+
+@pytest.mark.parametrize("task", ["motor", "path_finding"])
+def test_after_close_every_call_says_so(task: Any) -> None:
+    made: Any = load(task)
+    made.reset()
+    made.close()
+    made.close()
+    with pytest.raises(RuntimeError, match="has been closed"):
+        made.reset()
+    with pytest.raises(RuntimeError, match="has been closed"):
+        made.step(np.zeros(made.action_spec().shape))
