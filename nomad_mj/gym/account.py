@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import dm_env
@@ -91,29 +92,38 @@ class Account:
         }
 
 
-def motor_measures(task: MotorTask, body: Body) -> Measures:
-    """Return what measures a control step of the motor task."""
+@dataclass(frozen=True)
+class MotorMeasures:
+    """What measures a control step of the motor task.
 
-    def measure(step: dm_env.TimeStep) -> dict[str, Any]:
-        travel = task.travel
-        bumped = bool(np.count_nonzero(body.bumpers()))
+    Not a function within a function: a copy of an environment measures itself.
+    """
+
+    task: MotorTask
+    body: Body
+
+    def __call__(self, step: dm_env.TimeStep) -> dict[str, Any]:
+        """Return the measures of a time step."""
+        travel = self.task.travel
+        bumped = bool(np.count_nonzero(self.body.bumpers()))
         driven = 0.0 if step.first() else math.hypot(travel.forward, travel.sideways)
         return {
             "cost": float(bumped),
             "bumper_contact": bumped,
-            "clearance": float(task.ranges.min()),
+            "clearance": float(self.task.ranges.min()),
             "duration": 0.0 if step.first() else CONTROL_TIMESTEP,
             "driven": driven,
         }
 
-    return measure
 
+class MoveMeasures:
+    """What measures a move of path finding."""
 
-def move_measures(task: MotorTask) -> Measures:
-    """Return what measures a move of path finding."""
-    farthest = max(ring.max_range for ring in task.scene.robot.layout.rings)
+    def __init__(self, task: MotorTask) -> None:
+        self._farthest = max(ring.max_range for ring in task.scene.robot.layout.rings)
 
-    def measure(step: dm_env.TimeStep) -> dict[str, Any]:
+    def __call__(self, step: dm_env.TimeStep) -> dict[str, Any]:
+        """Return the measures of a time step."""
         seen = step.observation
         outcome = Outcome(int(seen["outcome"]))
         stopped, bumped = outcome is Outcome.VIRTUAL_COLLISION, bool(seen["contact"])
@@ -122,10 +132,8 @@ def move_measures(task: MotorTask) -> Measures:
             "virtual_collision": stopped,
             "bumper_contact": bumped,
             # Infinite after a move that has not begun.
-            "clearance": float(np.minimum(seen["clearance"], farthest)),
+            "clearance": float(np.minimum(seen["clearance"], self._farthest)),
             "duration": float(seen["duration"]),
             "driven": float(seen["driven"]),
             "outcome": int(outcome),
         }
-
-    return measure

@@ -17,6 +17,7 @@ from nomad_mj.gym.account import Account, Measures
 from nomad_mj.gym.camera import Camera
 from nomad_mj.gym.observations import Observer
 from nomad_mj.gym.reward import RewardOptions
+from nomad_mj.option_types import check_types
 from nomad_mj.tasks import MotorEnvironment, MotorTask, NavigationPhysics
 
 Action = npt.NDArray[np.floating[Any]]
@@ -113,13 +114,13 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         ClosedEnvironmentError
             The environment has been closed.
         """
-        if self._closed:
-            raise ClosedEnvironmentError("the environment has been closed: make another one")
+        self._refuse_closed()
         super().reset(seed=seed)
         options = options or {}
         for name in options:
             if name not in _RESET_OPTIONS:
                 raise ConfigError(f"unknown reset option {name!r}; there is: start")
+        self._over = True  # should it be refused
         step = self.environment.reset(seed, options.get("start"))
         self.seen, self._over, self._steps = step.observation, False, 0
         if self.render_mode is not None:
@@ -136,6 +137,8 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
 
         Raises
         ------
+        ClosedEnvironmentError
+            The environment has been closed.
         ResetNeeded
             The episode is over, or none has begun.
         ValueError
@@ -143,6 +146,7 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         PhysicsError
             The simulation diverged: the episode is over.
         """
+        self._refuse_closed()
         if self.seen is None or self._over:
             raise ResetNeeded("the episode is over: call reset() before the next step()")
         action = np.asarray(action, dtype=np.float64)
@@ -175,11 +179,16 @@ class NavigationEnv(gymnasium.Env[Any, Action]):
         if self.render_mode is None:
             gymnasium.logger.warn("no render_mode was given to make(): render() draws nothing")
             return None
+        self._refuse_closed()
         if self.seen is None:
             raise ResetNeeded("there is nothing to draw before the first reset()")
         fields = (("step", str(self._steps)), ("cost", f"{self._account.totals['cost']:g}"))
         elapsed = 1.0 / self.metadata["render_fps"]
         return self._camera.picture(self.physics, self.seen, elapsed, fields)
+
+    def _refuse_closed(self) -> None:
+        if self._closed:
+            raise ClosedEnvironmentError("the environment has been closed: make another one")
 
     def close(self) -> None:
         """Free the simulation and its OpenGL contexts; more than once does no harm."""
@@ -195,6 +204,7 @@ def picture_size(width: int | None, height: int | None) -> tuple[int, int] | Non
         return None
     if width is None or height is None:
         raise ConfigError(f"picture {width} x {height}: give width and height, or neither")
+    check_types("picture", {"width": width, "height": height}, {"width": int, "height": int})
     return width, height
 
 

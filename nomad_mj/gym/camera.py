@@ -1,6 +1,7 @@
 """Pictures of an environment while it runs, for ``render_mode="rgb_array"``."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -48,6 +49,10 @@ class Camera:
         self._studio: Studio | None = None
         self._trail: Trail | None = None
         self._situation = situation or SituationSpec()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy needs: it starts OpenGL of its own."""
+        return {**vars(self), "_studio": None}
 
     def begin(self, physics: NavigationPhysics) -> None:
         """Forget the way driven: an episode begins."""

@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, load
-from nomad_mj.gym.account import motor_measures
+from nomad_mj.gym.account import MotorMeasures
 from nomad_mj.gym.base import NavigationEnv, picture_size, refuse_observation
 from nomad_mj.gym.camera import Camera
 from nomad_mj.gym.everything import EverythingObserver
@@ -74,7 +74,7 @@ class MotorEnv(NavigationEnv):
             spec = env.action_spec()
             self._low, self._high = spec.minimum, spec.maximum
             count = spec.shape[0]
-            measures = motor_measures(env.task, env.physics)
+            measures = MotorMeasures(env.task, env.physics)
             super().__init__(
                 env, observers[observation], options, measures, count, render_mode, camera
             )

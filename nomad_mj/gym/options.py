@@ -1,20 +1,20 @@
 """Options as plain data, as a JSON file or a saved environment specification has them."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import is_dataclass
+from dataclasses import fields, is_dataclass
 from typing import Any, TypeVar, cast, get_args, get_type_hints
 
 import cattrs
 
 from nomad_mj.envs import PathFindingConfig
 from nomad_mj.errors import ConfigError, NomadError
-from nomad_mj.movers import MovingGoal, MovingObstacles
+from nomad_mj.movers import MovingGoal, MovingObstacles, Walkers
 from nomad_mj.tasks import MotorConfig
 
 _T = TypeVar("_T")
 _TYPES: dict[str, Any] = {
     "moving_goal": MovingGoal,
-    "moving_obstacles": MovingObstacles,
+    "moving_obstacles": MovingObstacles | Walkers,
     **get_type_hints(MotorConfig),
     **get_type_hints(PathFindingConfig),
 }
@@ -56,7 +56,12 @@ def task_options(given: Mapping[str, Any] | None) -> dict[str, Any]:
     options = dict(given or {})
     for name, value in options.items():
         kind = _TYPES.get(name)
-        for cls in (kind, *get_args(kind)):
-            if isinstance(value, Mapping) and isinstance(cls, type) and is_dataclass(cls):
-                options[name] = structure(f"task option {name!r}", value, cls)
+        known: list[Any] = [cls for cls in (kind, *get_args(kind)) if is_dataclass(cls)]
+        if isinstance(value, Mapping) and known:
+            cls = next((cls for cls in known if _has_fields(cls, value)), known[0])
+            options[name] = structure(f"task option {name!r}", value, cls)
     return options
+
+
+def _has_fields(cls: Any, value: Mapping[str, Any]) -> bool:
+    return set(value) <= {field.name for field in fields(cls)}

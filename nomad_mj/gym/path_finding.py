@@ -1,11 +1,12 @@
 """``nomad_mj/PathFinding-v0``: one step is one move of the robot's."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM, load
-from nomad_mj.gym.account import move_measures
+from nomad_mj.gym.account import MoveMeasures
 from nomad_mj.gym.base import NavigationEnv, picture_size, refuse_observation
 from nomad_mj.gym.camera import Camera
 from nomad_mj.gym.everything import EverythingObserver
@@ -94,14 +95,15 @@ class PathFindingEnv(NavigationEnv):
                 "ranges": RangesObserver(env.scene),
                 "dict": EverythingObserver(env.scene, env.observation_spec()),
             }
-            measures = move_measures(env.motor.task)
+            measures = MoveMeasures(env.motor.task)
             super().__init__(env, observers[observation], options, measures, 2, render_mode, camera)
         except BaseException:
             env.close()
             raise
         self.observation, self.situation = observation, spec
         if render_mode is not None:
-            env.on_control_step = lambda: camera.follow(env.physics)
+            # No lambda: a copy of the environment must follow its own robot.
+            env.on_control_step = partial(camera.follow, env.physics)
 
     def _command(self, action: FloatArray) -> FloatArray:
         return action

@@ -59,6 +59,8 @@ class NavigationVectorEnv(VectorEnv[Any, Any, Any]):
         self.single_observation_space, self.single_action_space = observation_space, action_space
         self.observation_space = batch_space(observation_space, batch.count)
         self.action_space = batch_space(action_space, batch.count)
+        if max_episode_steps is not None and max_episode_steps < 1:
+            raise ConfigError(f"max episode steps {max_episode_steps}: must be 1 or more")
         self._limit = np.inf if max_episode_steps is None else max_episode_steps
         self._steps = np.zeros(batch.count, dtype=np.intp)
         self._observed: list[Any] = [None] * batch.count
@@ -69,14 +71,14 @@ class NavigationVectorEnv(VectorEnv[Any, Any, Any]):
     def reset(
         self,
         *,
-        seed: "int | list[int | None] | None" = None,
+        seed: "int | Sequence[int | None] | None" = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[Any, dict[str, Any]]:
         """Begin new episodes.
 
         Parameters
         ----------
-        seed : int or list of int, optional
+        seed : int or sequence of int, optional
             One for all, s, gives environment i the seed s + i.
         options : dict, optional
             ``reset_mask``, array of N bool: which environments; the others stay as they are.
@@ -100,8 +102,10 @@ class NavigationVectorEnv(VectorEnv[Any, Any, Any]):
         if given.get("start") is not None:
             starts = [given["start"]] * self.num_envs
         chosen = np.ones(self.num_envs, dtype=bool) if mask is None else np.asarray(mask)
+        if chosen.shape == self._begun.shape and not (chosen | self._begun).all():
+            raise ConfigError("reset_mask: leaves out an environment that has not begun yet")
         step = self.batch.reset(seed, starts, chosen)
-        first = seed[0] if isinstance(seed, list) else seed
+        first = seed[0] if isinstance(seed, Sequence | np.ndarray) else seed
         if first is not None:  # of what wrappers draw; the environments have their own
             self._np_random, self._np_random_seed = np_random(int(first))
         infos: dict[str, Any] = {}

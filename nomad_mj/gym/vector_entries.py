@@ -12,7 +12,7 @@ from nomad_mj.batch import BatchMotor, BatchPathFinding, load_batch
 from nomad_mj.batch.load import Goals, Rooms
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
 from nomad_mj.errors import ConfigError
-from nomad_mj.gym.account import Account, Measures, motor_measures, move_measures
+from nomad_mj.gym.account import Account, Measures, MotorMeasures, MoveMeasures
 from nomad_mj.gym.base import refuse_observation
 from nomad_mj.gym.everything import EverythingObserver
 from nomad_mj.gym.motor import motor_commands
@@ -78,7 +78,7 @@ def path_finding_vector_env(
         "path_finding", num_envs, room, robot, given, limits, goal=goal, threads=threads
     )
     observers = [_move_observer(observation, scene, spec, batch) for scene in batch.scenes]
-    measures = [move_measures(task) for task in batch.tasks]
+    measures = [MoveMeasures(task) for task in batch.tasks]
     accounts = _accounts(batch, observers, options, measures)
     space = spaces.Box(-1.0, 1.0, (2,), np.float32)
     seen = _common([observer.space for observer in observers])
@@ -126,7 +126,7 @@ def motor_vector_env(
         for task in batch.tasks
     ]
     pairs = zip(batch.tasks, batch.worlds.worlds, strict=True)
-    accounts = _accounts(batch, observers, options, [motor_measures(*pair) for pair in pairs])
+    accounts = _accounts(batch, observers, options, [MotorMeasures(*pair) for pair in pairs])
     space = spaces.Box(-1.0, 1.0, batch.action_spec().shape[1:], np.float32)
     seen = _common([observer.space for observer in observers])
     return _MotorVectorEnv(batch, accounts, seen, space, autoreset_mode, max_episode_steps)
