@@ -72,7 +72,9 @@ def _count_file(path: Path, above: tuple[Path, ...]) -> float:
 def _count(element: ElementTree.Element, path: Path, above: tuple[Path, ...]) -> float:
     """Return how many elements one becomes."""
     if element.tag == "include" or (element.tag == "model" and element.get("file")):
-        return _count_file(path.parent / element.get("file", ""), (*above, path))
+        # The engine looks for all of them where the first file is.
+        folder = (above[0] if above else path).parent
+        return _count_file(folder / element.get("file", ""), (*above, path))
     for names, most in _SIZES.get(element.tag, ()):
         size = math.prod(_number(part) for name in names for part in element.get(name, "1").split())
         if size > most:

@@ -34,8 +34,9 @@ PUBLIC = {
         "read_ros_map room_of_map to_mjcf wide_room"
     ),
     "nomad_mj.robots": (
-        "PREFIX RayIndex RobotDescription Sheet adopt describe_robot find_sheet group_rays reach "
-        "read_sheet report_surfaces robot_geoms set_rays_per_cone unclip_surfaces"
+        "PREFIX RayIndex RobotDescription Sheet adopt collides describe_robot find_sheet "
+        "group_rays perimeter reach read_sheet report_surfaces robot_geoms set_rays_per_cone "
+        "unclip_surfaces"
     ),
     "nomad_mj.tasks": (
         "BumperNoise Crosstalk FiringOrder Gyroscope InfraredEffects MotorConfig MotorEnvironment "

@@ -12,7 +12,7 @@ FEWEST = 60
 SLACK = 0.5
 """How far the robot goes before it is seen to again what is near [m]."""
 
-_STEP = 0.1  # [m] that it may be farther when it is seen to
+_STEP = 0.5  # [m] that it may be farther when it is seen to: 10 m/s
 _SLOT = "near/"
 _OWN = {"geom_bodyid", "geom_plugin", "geom_user"}  # a slot's own, or nothing that is simulated
 

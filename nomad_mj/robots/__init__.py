@@ -2,7 +2,7 @@
 
 from nomad_mj.robots.adopt import adopt
 from nomad_mj.robots.description import RobotDescription, describe_robot, robot_geoms
-from nomad_mj.robots.extent import reach
+from nomad_mj.robots.extent import collides, perimeter, reach
 from nomad_mj.robots.naming import PREFIX
 from nomad_mj.robots.rays import set_rays_per_cone
 from nomad_mj.robots.rings import RayIndex, group_rays
@@ -15,9 +15,11 @@ __all__ = [
     "RobotDescription",
     "Sheet",
     "adopt",
+    "collides",
     "describe_robot",
     "find_sheet",
     "group_rays",
+    "perimeter",
     "reach",
     "read_sheet",
     "report_surfaces",

@@ -48,7 +48,7 @@ def adopt(spec: mujoco.MjSpec, sheet: Sheet, robot: str) -> None:
         spec.add_numeric(name=name, data=[value], size=1)
     for name, text in (("drive", sheet.drive), ("base", sheet.base)):
         if text:
-            spec.add_text(name=name, data=text)
+            _set_text(spec, name, text)
     if sheet.base and sheet.base not in [body.name for body in spec.bodies]:
         raise _missing(robot, "body", sheet.base, [body.name for body in spec.bodies])
     _name_bumpers(spec)
@@ -57,6 +57,13 @@ def adopt(spec: mujoco.MjSpec, sheet: Sheet, robot: str) -> None:
     for ring, made in sheet.rings.items():
         if isinstance(made, MadeRing):
             _make_ring(spec, ring, made, robot)
+
+
+def _set_text(spec: mujoco.MjSpec, name: str, data: str) -> None:
+    """Give the file a custom text, in place of its own of that name."""
+    for old in [text for text in spec.texts if text.name == name]:
+        spec.delete(old)
+    spec.add_text(name=name, data=data)
 
 
 def _missing(robot: str, what: str, name: str, there: list[str]) -> ModelError:
@@ -102,7 +109,7 @@ def _rename_motors(spec: mujoco.MjSpec, sheet: Sheet, robot: str) -> list[str]:
             else:
                 wheels.append(name)
     if wheels:
-        spec.add_text(name="motors", data="\n".join(wheels))  # a name may hold spaces
+        _set_text(spec, "motors", "\n".join(wheels))  # a name may hold spaces
     return [a.name for a in spec.actuators if a.name]
 
 
@@ -122,11 +129,13 @@ def _rename_actuator(spec: mujoco.MjSpec, old: str, new: str) -> None:
 def _make_servos(spec: mujoco.MjSpec, sheet: Sheet) -> None:
     """Make velocity servos of a data sheet's wheels, if it says how stiff and how fast."""
     gain, speed = (sheet.numbers.get(name) for name in ("servo_gain", "servo_max_speed"))
-    wheels = {*sheet.motors.get("", ()), *(["drive"] if sheet.drive == "car" else [])}
     if gain is None or speed is None:
         return
+    wheels = {*sheet.motors.get("", ())}
+    if sheet.drive == "car":
+        wheels |= {a.name for a in spec.actuators if re.fullmatch(r"drive(_\d+)?", a.name)}
     for actuator in spec.actuators:
-        if actuator.name in wheels or actuator.name.startswith("drive_"):
+        if actuator.name in wheels:
             gear = abs(float(actuator.gear[0])) or 1.0  # gain and speed are those of the wheel
             actuator.set_to_velocity(kv=gain / gear**2)
             actuator.ctrlrange, actuator.ctrllimited = [-speed * gear, speed * gear], True

@@ -7,7 +7,7 @@ import numpy as np
 
 from nomad_mj.motion import Drive, SynchroDrive
 from nomad_mj.robots.drives import Encoders, find_drive
-from nomad_mj.robots.extent import highest, perimeter
+from nomad_mj.robots.extent import collides, highest, perimeter
 from nomad_mj.robots.footing import Footing, find_footing
 from nomad_mj.robots.naming import PREFIX, NamedModel
 from nomad_mj.robots.rings import RayIndex, index_rays
@@ -83,7 +83,7 @@ def _sizes(named: NamedModel, footing: Footing) -> tuple[float, float]:
     footing.place(data.qpos, Pose(0.0, 0.0, 0.0))
     mujoco.mj_kinematics(model, data)
     geoms = robot_geoms(model)
-    solid = [g for g in geoms if model.geom_contype[g] or model.geom_conaffinity[g]]
+    solid = [g for g in geoms if collides(model)[g]]
     radius = named.find_number("radius") or perimeter(model, data, solid, data.xpos[base])
     if not radius > 0:
         raise named.error(

@@ -162,6 +162,11 @@ def _car(named: NamedModel, actuators: dict[str, int]) -> Driven:
     if wheelbase < 1e-3:
         raise named.error(": its steered wheels must be ahead of its driven ones; turn x ahead")
     lock = min(top_speed(named, *motor) for motor in zip(groups[1], steered, strict=True))
+    if lock >= np.pi / 2:
+        raise named.error(
+            f": its lock, the ctrlrange of {groups[1][0]!r}, is {lock:g} rad; it must be below a "
+            "right angle, 1.57 (the engine takes no degrees there)"
+        )
     fastest = named.number(
         "translate_max_speed",
         min(

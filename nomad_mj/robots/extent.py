@@ -4,11 +4,17 @@ from collections.abc import Iterable
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from nomad_mj.types import FloatArray
 
 _GEOM = mujoco.mjtGeom
 _DIRECTIONS = np.linspace(0.0, 2 * np.pi, 72, endpoint=False)
+
+
+def collides(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
+    """Return which geoms meet others at all, (G,)."""
+    return (model.geom_contype | model.geom_conaffinity) != 0
 
 
 def reach(model: mujoco.MjModel, data: mujoco.MjData, geom: int, direction: FloatArray) -> float:

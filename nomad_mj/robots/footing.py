@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from nomad_mj.robots.extent import lowest
+from nomad_mj.robots.extent import collides, lowest
 from nomad_mj.robots.naming import NamedModel
 from nomad_mj.types import FloatArray, Pose
 
@@ -172,7 +172,7 @@ def _rest(model: mujoco.MjModel, base: int, address: int) -> FloatArray:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     own = model.body_rootid[model.geom_bodyid] == model.body_rootid[base]
-    bottom = lowest(model, data, np.flatnonzero(own & (model.geom_contype > 0)).tolist())
+    bottom = lowest(model, data, np.flatnonzero(own & collides(model)).tolist())
     axes = data.xmat[base].reshape(3, 3)
     yaw = math.atan2(axes[1, 0], axes[0, 0])
     back = np.array([math.cos(yaw / 2), 0.0, 0.0, -math.sin(yaw / 2)])

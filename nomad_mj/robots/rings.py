@@ -14,6 +14,7 @@ import numpy as np
 from nomad_mj.robots.naming import PREFIX, NamedModel
 from nomad_mj.types import FloatArray, IntArray, RangeRing
 
+_SAME = 2e-3  # [rad] rays one above the other look the same way
 _FARTHEST = 10.0  # [m], where a rangefinder has no cutoff
 _FIELD = mujoco.mjtRayDataField
 # What a ray reports that tells how a surface lies; an ordinary one reports the distance alone.
@@ -21,6 +22,11 @@ SURFACE_DATA = sum(
     1 << int(field)
     for field in (_FIELD.mjRAYDATA_DIST, _FIELD.mjRAYDATA_DIR, _FIELD.mjRAYDATA_NORMAL)
 )
+TAKEN = (
+    *("bumpers", "encoders", "odometry", "goal"),
+    *("duration", "driven", "clearance", "outcome", "contact"),
+)
+"""Names of other observations, which no ring can have."""
 _NAME = re.compile(r"(?P<ring>.*?)(?:_(?P<ray>\d+))?_(?P<cone>\d+)")
 
 
@@ -54,7 +60,7 @@ def group_rays(names: list[str]) -> dict[str, dict[int, list[int]]]:
     """Return ``{ring: {cone: [position in names]}}``, rays and cones in order of their numbers."""
     found: dict[str, dict[int, list[tuple[int, int]]]] = defaultdict(lambda: defaultdict(list))
     for position, name in enumerate(names):
-        match = _NAME.fullmatch(name.rpartition("/")[2])
+        match = _NAME.fullmatch(name.removeprefix(PREFIX))
         if match:
             ray = int(match["ray"] or 0)
             found[match["ring"]][int(match["cone"])].append((ray, position))
@@ -96,10 +102,11 @@ def _ring(name: str, cones: list[list[_Ray]], limits: tuple[float, float]) -> Ra
         axis = float(np.angle(np.exp(1j * angles).sum()))
         bearings.append(axis)
         spread = max(spread, float(np.abs(np.angle(np.exp(1j * (angles - axis)))).max()))
-    if spread < 1e-6:  # single rays, but for rounding: each speaks for the space up to the next
+    if spread < 1e-6:  # single rays, but for rounding: each speaks for half the least gap
         around = np.sort(bearings)
         gaps = np.diff(around, append=around[0] + 2 * np.pi)
-        spread = float(max(gaps.min() / 2, 1e-3)) if len(bearings) > 1 else np.pi / 12
+        gaps = gaps[gaps > _SAME]
+        spread = float(gaps.min() / 2) if len(gaps) > 1 else np.pi / 12
     return RangeRing(name, tuple(bearings), spread, *limits)
 
 
@@ -160,6 +167,11 @@ def index_rays(
     for ring_name, cones in group_rays(names).items():
         members = [[sensors[p] for p in rays] for rays in cones.values()]
         sites = [[int(model.sensor_objid[s]) for s in rays] for rays in members]
+        if ring_name in TAKEN:
+            raise named.error(
+                f": rangefinders of a ring {ring_name!r} would hide another observation of that "
+                "name; call them sonar_0, sonar_1, ..."
+            )
         _check_mount(named, ring_name, [site for own in sites for site in own], mount)
         _check_cutoffs(named, [sensor for own in members for sensor in own])
         rays = [_rays(model, mount, own) for own in sites]

@@ -4,11 +4,13 @@
 optional; `docs/your-own-robot.md` explains them.
 """
 
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from nomad_mj.errors import ModelError
+from nomad_mj.robots.rings import TAKEN
 from nomad_mj.values import number, numbers, read_yaml, refuse_others
 
 KINDS = ("synchro", "differential", "omni", "car")
@@ -29,7 +31,6 @@ _NUMBERS = (
 )
 _OF_RING, _OF_WHEEL = "<ring>_min_range", "<motor>_rollers"
 _MADE = ("body", "count", "bearings", "distance", "height", "half_angle", "rays", "range")
-_TAKEN = ("bumpers", "encoders", "odometry", "goal", "duration", "driven", "clearance", "outcome")
 _MOST_CONES, _MOST_RAYS = 720, 64
 
 
@@ -116,8 +117,13 @@ def read_sheet(robot: Path) -> Sheet:
     refuse_others(dict.fromkeys(others), (*_NUMBERS, _OF_RING, _OF_WHEEL), f"{what} numbers")
     rings = _mapping(held.get("rings", {}), f"{what} rings")
     for name in rings:
-        if name in _TAKEN or not name:
+        if name in TAKEN or not name:
             raise ModelError(f"{what} ring {name!r}: must have a name of its own, such as sonar")
+        if re.search(r"_\d+$", name):
+            raise ModelError(
+                f"{what} ring {name!r}: must not end in a number, as its rays do; call it "
+                "lidar_front, say"
+            )
     return Sheet(
         drive,
         _text(held.get("base", ""), f"{what} base"),
@@ -162,6 +168,13 @@ def _motors(value: Any, drive: str, what: str) -> dict[str, tuple[str, ...]]:
     return {role: _names(names, f"{what} {role}") for role, names in found.items()}
 
 
+def _whole(value: Any, what: str, most: int) -> int:
+    found = number(value, what, 1, most)
+    if found != int(found):
+        raise ModelError(f"{what} {found:g}: must be a whole number")
+    return int(found)
+
+
 def _ring(value: Any, what: str) -> tuple[str, ...] | MadeRing:
     if not isinstance(value, dict):
         return _names(value, what)
@@ -169,7 +182,7 @@ def _ring(value: Any, what: str) -> tuple[str, ...] | MadeRing:
     if ("count" in value) == ("bearings" in value):
         raise ModelError(f"{what}: needs count, or bearings [deg] (one of the two)")
     if "count" in value:
-        count = int(number(value["count"], f"{what} count", 1, _MOST_CONES))
+        count = _whole(value["count"], f"{what} count", _MOST_CONES)
         bearings = tuple(360.0 * k / count for k in range(count))
     else:
         bearings = numbers(value["bearings"], f"{what} bearings", 1, _MOST_CONES)
@@ -177,7 +190,7 @@ def _ring(value: Any, what: str) -> tuple[str, ...] | MadeRing:
     if not least < most:
         raise ModelError(f"{what} range [{least:g}, {most:g}]: must be the least and the greatest")
     half = number(value.get("half_angle", 0.0), f"{what} half_angle", 0.0, 90.0)
-    rays = int(number(value.get("rays", 3 if half else 1), f"{what} rays", 1, _MOST_RAYS))
+    rays = _whole(value.get("rays", 3 if half else 1), f"{what} rays", _MOST_RAYS)
     return MadeRing(
         _text(value.get("body", ""), f"{what} body"),
         bearings,

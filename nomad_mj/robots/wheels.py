@@ -6,12 +6,20 @@ import mujoco
 import numpy as np
 
 from nomad_mj.motion import WheeledDrive
-from nomad_mj.robots.extent import lowest
+from nomad_mj.robots.extent import collides, lowest
 from nomad_mj.robots.footing import find_base
 from nomad_mj.robots.naming import NamedModel
 from nomad_mj.types import FloatArray, MotionLimits
 
 _TRANSMISSION = mujoco.mjtTrn
+_ON = tuple(
+    int(kind)
+    for kind in (
+        _TRANSMISSION.mjTRN_JOINT,
+        _TRANSMISSION.mjTRN_JOINTINPARENT,
+        _TRANSMISSION.mjTRN_SITE,
+    )
+)
 _PLAIN = mujoco.mjtDyn.mjDYN_NONE
 _LEVEL = 0.1  # an axle's vertical part, at most
 
@@ -97,7 +105,7 @@ def _solid(model: mujoco.MjModel, joint: int) -> list[int]:
     """Return the geoms of a joint's body, those that collide if there are any."""
     body = int(model.jnt_bodyid[joint])
     own = np.flatnonzero(model.geom_bodyid == body).tolist()
-    return [g for g in own if model.geom_contype[g]] or own
+    return [g for g in own if collides(model)[g]] or own
 
 
 def _contact(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> FloatArray:
@@ -125,6 +133,8 @@ def find_wheels(named: NamedModel, actuators: dict[str, int]) -> list[str]:
         named.require("actuator", name, actuators)
         if not is_velocity_servo(model, actuators[name]):
             raise named.error(f": actuator {name!r} takes no speed; write it as <velocity kv=...>")
+        if int(model.actuator_trntype[actuators[name]]) not in _ON:
+            raise named.error(f": actuator {name!r} must act on a joint, or on a site")
     found = given or [name for name, index in actuators.items() if _rolls(model, index)]
     if len(found) < 2:
         raise named.error(

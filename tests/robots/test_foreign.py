@@ -171,6 +171,8 @@ WRONG = {
     ),
     "radius": ("numbers: {radius: 0}\n" + LIDAR, "its radius is 0; it must be above 0"),
     "ring": ("rings: {lidar: {height: 1}}", "needs count, or bearings"),
+    "numbered ring": ("rings: {lidar_1: {count: 8}}", "'lidar_1': must not end in a number"),
+    "part of a ray": ("rings: {lidar: {count: 8.9}}", "count 8.9: must be a whole number"),
     "rays": ("rings: {lidar: {count: 0}}", "count 0: must be a number from 1 to 720"),
     "range": ("rings: {lidar: {count: 8, range: [2, 1]}}", "range [2, 1]: must be the least"),
     "roles": ("drive: car\nmotors: [a, b]\n" + LIDAR, "has roles; write {drive: ..., steer: ...}"),
@@ -188,6 +190,7 @@ def test_mistakes_in_a_data_sheet_are_one_line(cart: Cart, sheet: str, told: str
     assert told in message and "\n" not in message
 
 
+BELT = '<tendon><fixed name="belt"><joint joint="wheel_l" coef="1"/></fixed></tendon>'
 FILES = {
     "torque": (("velocity", "motor"), ('kv="1"', ""), "takes no speed; write it as <velocity"),
     "no gear": (('kv="1"', 'kv="1" gear="0"'), ("", ""), "has no gear, so it moves nothing"),
@@ -196,6 +199,11 @@ FILES = {
         ('<freejoint name="root"/>', ""),
         ('<keyframe><key name="home" qpos="0 0 0.1 1 0 0 0 0 0"/></keyframe>', ""),
         "'base_link' cannot go everywhere",
+    ),
+    "tendon": (
+        ("<actuator>", f"{BELT}<actuator>"),
+        ('joint="wheel_l" kv="1"', 'tendon="belt" kv="1"'),
+        "must act on a joint, or on a site",
     ),
     "two": (
         ("</worldbody>", '<body name="table"><geom size="1"/></body></worldbody>'),
@@ -209,7 +217,8 @@ FILES = {
 def test_what_is_missing_in_the_file_is_told(
     cart: Cart, first: tuple[str, str], second: tuple[str, str], told: str
 ) -> None:
-    sheet = LIDAR + ("motors: [motor_l, motor_r]\n" if "speed" in told else "")
+    named = "speed" in told or "act on" in told
+    sheet = LIDAR + ("motors: [motor_l, motor_r]\n" if named else "")
     with pytest.raises(ModelError) as caught:
         build_scene("empty_room", cart(first, second, sheet=sheet))
     message = str(caught.value)

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nomad_mj.errors import ModelError
 from nomad_mj.robots import RobotDescription, group_rays
 from nomad_mj.scene import build_scene
 from nomad_mj.types import RangeRing
@@ -56,7 +57,13 @@ def test_single_rays_speak_for_the_space_up_to_the_next(
 
 @pytest.mark.parametrize(
     ("bearings", "half_angle"),
-    [([170, 190, 0, 90], 10), ([0, 10, 50, 120, 250], 5), ([37.3], 15), ([20, 20], 0.0573)],
+    [
+        ([170, 190, 0, 90], 10),
+        ([0, 10, 50, 120, 250], 5),
+        ([37.3], 15),
+        ([20, 20], 15),
+        ([20, 20, 60], 20),
+    ],
 )
 def test_uneven_rings_open_as_far_as_their_nearest_neighbours(
     ring_robot: RingRobot, bearings: Sequence[float], half_angle: float
@@ -92,3 +99,21 @@ def test_other_rangefinders_and_those_of_the_room_are_left_alone(
     scene = build_scene(room, ring_robot([0, 90], ("</sensor>", more)))
     assert [ring.name for ring in scene.robot.layout.rings] == ["infrared"]
     assert scene.robot.layout.count == 2
+
+
+def test_a_prefix_keeps_rings_apart_and_two_rays_that_look_alike_are_one(
+    ring_robot: RingRobot,
+) -> None:
+    assert list(group_rays(["left/sonar_0", "right/sonar_0", "robot/sonar_1"])) == [
+        "left/sonar",
+        "right/sonar",
+        "sonar",
+    ]
+    ring = described(ring_robot([0.0, 1e-6, 30.0, 60.0, 180.0])).layout.rings[0]
+    assert ring.half_angle == pytest.approx(math.radians(15))
+
+
+@pytest.mark.parametrize("name", ["contact", "goal", "clearance"])
+def test_a_ring_cannot_hide_another_observation(ring_robot: RingRobot, name: str) -> None:
+    with pytest.raises(ModelError, match=f"a ring '{name}' would hide another observation"):
+        build_scene("empty_room", ring_robot(ring=name))
