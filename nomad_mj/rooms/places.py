@@ -65,6 +65,11 @@ def furnish(
             f"room {room.name!r}: goal ({target[0]:g}, {target[1]:g}) is outside; the room reaches "
             f"from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
         )
+    if not shapely.box(x0, y0, x1, y1).buffer(_PRECISION).contains(plan.free_space(radius, target)):
+        raise StartError(
+            f"room {room.name!r}: goal ({target[0]:g}, {target[1]:g}) is outside of its walls, or "
+            "there is a gap in them"
+        )
     chosen = room.starts
     if starts is not None or not chosen:
         count, fewest = (DEFAULT_STARTS, 1) if starts is None else (starts, starts)

@@ -77,7 +77,84 @@ def test_a_room_beside_the_plan_it_was_made_of(
     assert code == 0 and found["room"] == "plan" and found["starts"] > 0
 
 
+LOW = '<geom name="obstacle_low" type="box" pos="0 0 0.1" size="0.4 0.4 0.1"/>'
+WALKER = (
+    '<body name="moving_a" mocap="true" pos="-2 0 0.7" user="0.6 2">'
+    '<geom type="cylinder" size="0.25 0.7"/></body><site name="moving_a_way_1" pos="3 0 0"/>'
+)
+GAP = ('size="5 0.1 0.5" pos="0 5.1 0.5"', 'size="3 0.1 0.5" pos="0 5.1 0.5"')
+PILLAR = '<geom name="obstacle_pillar" type="cylinder" pos="0 0 .7" size=".3 .7"/>'
+
+
+@pytest.mark.parametrize(
+    ("robot", "body", "edits", "told"),
+    [
+        ("nomad200", LOW, (), "obstacle_low: lower than"),
+        ("khepera", LOW, (), None),
+        ("nomad200", "", (GAP,), "nothing keeps the robot in"),
+    ],
+)
+def test_what_spoils_a_room_is_told(
+    own_room: Callable[..., Path],
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    robot: str,
+    body: str,
+    edits: tuple[tuple[str, str], ...],
+    told: str | None,
+) -> None:
+    room = str(own_room(body, *edits))
+    code, found, _ = checked(capsys, room, "--robot", robot, "--out", str(tmp_path))
+    assert code == (told is not None) == bool(found["faults"])
+    assert told is None or any(told in fault for fault in found["faults"])
+
+
+def test_a_room_whose_people_cannot_walk_is_refused(
+    own_room: Callable[..., Path], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    room = str(own_room(PILLAR + WALKER))
+    assert main(["check", room, "--out", str(tmp_path)]) == 2
+    assert "cannot walk straight from (-2, 0) to (3, 0)" in capsys.readouterr().err
+
+
+def test_a_robot_that_cannot_stop_in_time_is_told(
+    ring_robot: Callable[..., Path], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    robot = ring_robot(range(0, 360, 30), ('forcerange="-60 60"', 'forcerange="-6 6"'))
+    code, found, _ = checked(capsys, str(robot), "--out", str(tmp_path))
+    assert code == 1
+    assert any("may be too weak to stop it in time" in fault for fault in found["faults"])
+
+
+def test_a_robot_that_flies_apart_is_told_in_one_line(
+    ring_robot: Callable[..., Path], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    light = 'mass="1e-9" diaginertia="1e-12 1e-12 1e-12"'
+    robot = ring_robot(
+        range(0, 360, 30),
+        ('mass="20" diaginertia="1 1 1"', light),
+        ('mass="5" diaginertia="0.1 0.1 0.1"', light),
+    )
+    code = main(["check", str(robot), "--out", str(tmp_path)])
+    out, err = capsys.readouterr()
+    assert code in (1, 2) and "Traceback" not in err
+    assert "diverged" in out + err
+
+
+def test_a_robot_too_large_for_the_room_of_the_patterns_is_told(
+    ring_robot: Callable[..., Path], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    robot = ring_robot(range(0, 360, 30), ('name="radius" data="0.2"', 'name="radius" data="1.4"'))
+    assert main(["check", str(robot), "--out", str(tmp_path)]) == 2
+    assert "too large to be checked, which is done in empty_room" in capsys.readouterr().err
+
+
 FAULTS = {
+    "large": (
+        range(0, 360, 30),
+        ('name="radius" data="0.2"', 'name="radius" data="0.1"'),
+        "its radius is 0.1 m, but what collides reaches 0.10 m farther",
+    ),
     "blind": ([0, 90], (), "no cone covers"),
     "short": (range(0, 360, 30), ('cutoff="1.5"', 'cutoff="0.9"'), "see 0.9 m, moves are up to"),
     "inside": (

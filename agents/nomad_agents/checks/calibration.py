@@ -12,6 +12,7 @@ from nomad_mj.motion import WheeledDrive
 from nomad_mj.scene import Scene
 
 _SLIP = 0.005  # of the way, or of the turn, that odometry may be off
+_OVERSHOT = 0.05  # [m] likewise and by odometry, of a robot that can stop when it should
 _MISSED = 1.0  # [m] from where the straight way should end: no wheel is so wrongly measured
 
 
@@ -35,6 +36,8 @@ def calibrate(scene: Scene, drifts: Sequence[Drift]) -> dict[str, float]:
     numbers: dict[str, float] = {}
     if not isinstance(drive, WheeledDrive) or drive.kind != "differential":
         return numbers
+    if not straight.stretch > 0 or not turn.turned:  # it did not move at all
+        return numbers
     stretch = straight.stretch if abs(straight.stretch - 1) > _SLIP else 1.0
     if stretch != 1.0:
         gear = float(scene.model.actuator_gear[scene.robot.motors[0], 0])
@@ -55,6 +58,11 @@ def find_drift_faults(scene: Scene, drifts: Sequence[Drift]) -> list[str]:
         faults.append(
             f"{straight.name}: ends {straight.off_target:.2f} m from its target; does each motor "
             "do what its name says, in that direction?"
+        )
+    elif straight.finished and straight.off_target - straight.off_odometry > _OVERSHOT:
+        faults.append(
+            f"{straight.name}: ends {straight.off_target:.2f} m from its target; its motors may be "
+            "too weak to stop it in time: give them more force, or less translate_max_acceleration"
         )
     if abs(straight.stretch - 1) > _SLIP:
         faults.append(

@@ -4,9 +4,10 @@ import math
 
 import mujoco
 import numpy as np
+from dm_control.rl.control import PhysicsError
 
 from nomad_mj.motion import SynchroDrive
-from nomad_mj.robots import PREFIX
+from nomad_mj.robots import PREFIX, collides, perimeter, robot_geoms
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.tasks import NavigationPhysics
 from nomad_mj.types import Pose
@@ -14,6 +15,7 @@ from nomad_mj.types import Pose
 _MOVE = 1.0  # [m], the longest
 _LEVEL = math.radians(5)
 _SEAM = math.radians(3)  # between cones that still count as closed
+_BEYOND = 0.01  # [m] that geoms may reach beyond the perimeter
 _REST = 2.0  # [s] for which the robot should stand still
 _STILL, _UPRIGHT = 0.002, math.radians(1)  # [m], [rad]
 
@@ -26,13 +28,30 @@ def find_faults(scene: Scene) -> list[str]:
     scene : Scene
         The robot in a room with some metres of free floor about its first start.
     """
-    faults = [*_reach(scene), *_gaps(scene), *_rays(scene), *_rest(scene)]
+    faults = [*_size(scene), *_reach(scene), *_gaps(scene), *_rays(scene), *_rest(scene)]
     if not scene.robot.bumpers:
         faults.append(
             "no bumpers: contacts are not felt, a move that pushes something ends by its time "
             "limit; add touch sensors"
         )
     return faults
+
+
+def _size(scene: Scene) -> list[str]:
+    """Return a line if what collides reaches beyond the perimeter."""
+    model, base = scene.model, scene.robot.footing.base
+    data = mujoco.MjData(model)
+    scene.robot.footing.place(data.qpos, Pose(0.0, 0.0, 0.0))
+    mujoco.mj_kinematics(model, data)
+    solid = [geom for geom in robot_geoms(model) if collides(model)[geom]]
+    beyond = perimeter(model, data, solid, data.xpos[base]) - scene.robot.layout.radius
+    if beyond < _BEYOND:
+        return []
+    fault = (
+        f"its radius is {scene.robot.layout.radius:g} m, but what collides reaches {beyond:.2f} m "
+        "farther; without the number it is measured"
+    )
+    return [fault]
 
 
 def _reach(scene: Scene) -> list[str]:
@@ -64,7 +83,7 @@ def _gaps(scene: Scene) -> list[str]:
     blind = np.degrees(middles[~covered])
     fault = (
         f"no cone covers {share:.0%} of the directions (such as {blind[len(blind) // 2]:.0f} deg): "
-        "these count as half occupied; open the cones, or add some"
+        "these count as half occupied; open the cones, add some, or spread single rays evenly"
     )
     return [fault]
 
@@ -116,6 +135,10 @@ def _rest(scene: Scene) -> list[str]:
         moved = math.hypot(after.x - before.x, after.y - before.y, data.xpos[base][2] - height)
         tilt = math.acos(min(1.0, float(data.xmat[base].reshape(3, 3)[2, 2])))
         off = math.hypot(before.x - start.x, before.y - start.y)
+    except PhysicsError as error:
+        return [
+            f"does not stand still: {error}; look for geoms that overlap, tiny masses, stiff servos"
+        ]
     finally:
         physics.free()
     faults: list[str] = []

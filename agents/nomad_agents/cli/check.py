@@ -6,16 +6,19 @@ from typing import Annotated
 
 import mujoco
 import tyro
+from dm_control.rl.control import PhysicsError
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from nomad_agents.checks import (
+    Drift,
     draw_robot_card,
     drift_table,
     drive_patterns,
     find_drift_faults,
     find_faults,
+    find_room_faults,
     robot_table,
     robot_values,
     room_values,
@@ -25,10 +28,11 @@ from nomad_agents.cli.common import console, print_json
 from nomad_agents.experiments.figures import draw_starts
 from nomad_agents.paths import expanded
 from nomad_mj.assets import find_robot, find_room, list_robots, list_rooms
-from nomad_mj.errors import ModelError, OutputError
+from nomad_mj.errors import ConfigError, ModelError, OutputError, StartError
 from nomad_mj.guard import check_size
 from nomad_mj.robots import find_sheet
-from nomad_mj.scene import build_scene
+from nomad_mj.scene import Scene, build_scene
+from nomad_mj.tasks import MotorTask
 
 _EMPTY = "empty_room"
 
@@ -55,10 +59,14 @@ class Check:
         screen = console(json_wanted=self.json)
         if room:
             return self._room(screen, out)
-        scene = build_scene(_EMPTY, self.file)
+        scene = self._in_empty_room()
         path = out / f"check_{scene.robot.name}"
         faults = find_faults(scene)
-        drifts = [] if self.no_drive else drive_patterns(self.file)
+        drifts: list[Drift] = []
+        try:
+            drifts = [] if self.no_drive else drive_patterns(self.file)
+        except PhysicsError as error:
+            faults.append(f"cannot be driven: {error}; look for tiny masses and stiff servos")
         faults += find_drift_faults(scene, drifts) if drifts else []
         draw_robot_card(scene, path)
         for table in (robot_table(scene, find_robot(self.file)), sensor_table(scene)):
@@ -73,8 +81,19 @@ class Check:
             )
         return 1 if faults else 0
 
+    def _in_empty_room(self) -> Scene:
+        try:
+            return build_scene(_EMPTY, self.file)
+        except StartError as error:
+            raise ConfigError(
+                f"{self.file}: too large to be checked, which is done in {_EMPTY}, 10 x 10 m: "
+                f"{error}"
+            ) from None
+
     def _room(self, screen: Console, out: Path) -> int:
         scene = build_scene(self.file, self.robot)
+        MotorTask(scene)  # whatever is wrong with what moves is said, too
+        faults = find_room_faults(scene)
         path = out / f"check_{scene.arena.name}"
         draw_starts(scene, path)
         values = room_values(scene)
@@ -82,10 +101,10 @@ class Check:
         for name, value in values.items():
             table.add_row(name.replace("_", " "), str(value))
         screen.print(table)
-        _print_faults(screen, [], out / f"{path.name}.png")
+        _print_faults(screen, faults, out / f"{path.name}.png")
         if self.json:
-            print_json(values | {"faults": []})
-        return 0
+            print_json(values | {"faults": faults})
+        return 1 if faults else 0
 
 
 def _folder(out: str) -> Path:

@@ -7,6 +7,8 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 
+from dm_control.rl.control import PhysicsError
+
 from nomad_agents.cli.common import fail
 from nomad_agents.cli.parsing import parse
 from nomad_mj.errors import NomadError
@@ -43,6 +45,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return command.run()
     except NomadError as error:
         return fail(str(error))
+    except PhysicsError as error:
+        return fail(f"{error}; nomad-mj check ROBOT tells what may be wrong with a robot")
     except KeyboardInterrupt:
         print("nomad-mj: interrupted", file=sys.stderr)
         return 130
