@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from nomad_agents.benchmark.checks import CHECK_SEED, Checks
-from nomad_agents.benchmark.conditions import CONDITIONS, find_condition
+from nomad_agents.benchmark.conditions import CONDITIONS, condition_of, find_condition
 from nomad_agents.benchmark.plan import MOST_SEEDS, Plan, plan_runs
 from nomad_agents.benchmark.sets import SETS, Case, find_set, room_sets, write_room
 from nomad_agents.evaluation import draw_starts
@@ -19,6 +19,7 @@ from nomad_agents.registry import SETTINGS, find_config
 from nomad_agents.training import Training, TrainingConfig, stream, train
 
 import nomad_mj
+from nomad_mj.assets import list_robots
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import ConfigError, NomadError, UnknownNameError
 from nomad_mj.scene import build_scene
@@ -182,3 +183,15 @@ def test_every_agent_has_a_learner_and_the_usual_ones_need_no_hours() -> None:
     usual = usual_agents()
     assert {"reactive_planner:faithful", "reactive_planner:tuned", "planner"} <= set(usual)
     assert not {find_learner(each)[0].name for each in usual} & {"sac", "td3", "ppo"}
+
+
+@pytest.mark.parametrize("robot", list_robots())
+@pytest.mark.parametrize("name", CONDITIONS)
+def test_conditions_suit_every_robot(name: str, robot: str, small_room: Path) -> None:
+    layout = build_scene(small_room, robot).robot.layout
+    rings = {ring.name for ring in layout.rings}
+    options = condition_of(name, layout)
+    if rings >= {"sonar", "infrared"}:
+        assert options == find_condition(name)
+    with closing(nomad_mj.load("motor", small_room, robot, options)) as env:
+        env.reset(seed=0)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -17,6 +18,7 @@ from nomad_mj import (
     Walkers,
 )
 from nomad_mj.errors import UnknownNameError
+from nomad_mj.types import SensorLayout
 
 USUAL = "usual"
 _POOR_RANGES: dict[str, Any] = {
@@ -48,3 +50,16 @@ def find_condition(name: str) -> dict[str, Any]:
     if name not in CONDITIONS:
         raise UnknownNameError("condition", name, CONDITIONS)
     return dict(CONDITIONS[name])
+
+
+def condition_of(name: str, layout: SensorLayout) -> dict[str, Any]:
+    """Return the task options of a condition for a robot: what its sensors have can err."""
+    options = find_condition(name)
+    rings = {ring.name for ring in layout.rings}
+    for effects in ("sonar", "infrared"):
+        if effects in options and not rings.issuperset(options[effects].rings):
+            del options[effects]
+    noise = options.get("range_noise")
+    if noise is not None and not rings.issuperset(noise.specular_rings):
+        options["range_noise"] = replace(noise, grazing=None)
+    return options

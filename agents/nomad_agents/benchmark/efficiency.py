@@ -18,7 +18,7 @@ class Efficiency(NamedTuple):
     decisions : array (n,)
         Of learning.
     median, low, high : array (n,)
-        Of the success rate over the runs that have begun: median and quartiles.
+        Of the success rate over all runs, from where all have begun: median and quartiles.
     mastered : float
         Median over runs of the decisions until 90 %; inf if half of the runs never get there.
     """

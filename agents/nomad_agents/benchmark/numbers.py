@@ -68,12 +68,17 @@ def strata(results: Sequence[Result], key: str) -> list[FloatArray]:
 
 def spread_of(results: Sequence[Result], key: str) -> Spread:
     """Return how one number of an agent spreads over its runs, tasks as strata."""
-    return _spread(tuple(tuple(values.tolist()) for values in strata(results, key)))
+    # None for what is missing: no NaN equals itself, so the cache would never find it.
+    known = (
+        tuple(None if np.isnan(value) else value for value in values.tolist())
+        for values in strata(results, key)
+    )
+    return _spread(tuple(known))
 
 
 @cache  # tables, figures and the page ask for the same, and each takes a while
-def _spread(values: tuple[tuple[float, ...], ...]) -> Spread:
-    return spread([np.array(each) for each in values])
+def _spread(values: tuple[tuple[float | None, ...], ...]) -> Spread:
+    return spread([np.array(each, dtype=np.float64) for each in values])
 
 
 def has(results: Sequence[Result], key: str) -> bool:

@@ -13,13 +13,14 @@ import numpy as np
 
 import nomad_mj
 from nomad_agents.benchmark.checks import Checks, until_mastered
-from nomad_agents.benchmark.conditions import find_condition
+from nomad_agents.benchmark.conditions import condition_of, find_condition
 from nomad_agents.deep.extra import DEEP_PACKAGES
 from nomad_agents.evaluation import Trial
 from nomad_agents.experiments.measures import assess, episode_rows
 from nomad_agents.experiments.runs import Result, Row, Run
 from nomad_agents.learners import Learner, Lesson, find_learner
 from nomad_mj.envs import PathFinding
+from nomad_mj.scene import build_scene
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ def _task(run: BenchmarkRun) -> dict[str, Any]:
     return {
         "room": run.room,
         "robot": run.robot,
-        "task_kwargs": find_condition(run.condition),
+        "task_kwargs": condition_of(run.condition, build_scene(run.room, run.robot).robot.layout),
     }
 
 
