@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 
 from nomad_mj.arenas import Arena, FloorPlan, check_arena, near_model
+from nomad_mj.arenas.names import ROOM_PREFIX
 from nomad_mj.assets import find_robot, find_room, models_dir
 from nomad_mj.errors import ConfigError, ModelError
 from nomad_mj.movers import (
@@ -30,7 +31,6 @@ from nomad_mj.robots import (
 )
 
 CONTROL_TIMESTEP = 0.05  # [s], the rate of the robot's own controller
-ROOM_PREFIX = "room/"
 
 
 @dataclass(frozen=True)
@@ -66,18 +66,19 @@ class Scene:
 
     @property
     def shown_bounds(self) -> "tuple[float, float, float, float]":
-        """What a picture of the room shows, (x0, y0, x1, y1) [m]: all that stands in it.
+        """What a picture of the room shows, (x0, y0, x1, y1) [m].
 
-        Where nothing does, goal and starts with a metre around.
+        All that stands in it, and goal and starts with a metre around where these are outside.
         """
-        if self.plan.footprints:
-            x0, y0, x1, y1 = self.plan.bounds.tolist()
-            return x0, y0, x1, y1
         places = np.concatenate([self.arena.starts[:, :2], self.arena.goal[None]])
-        (x0, y0), (x1, y1) = (
-            (places.min(axis=0) - 1.0).tolist(),
-            (places.max(axis=0) + 1.0).tolist(),
-        )
+        low, high = places.min(axis=0), places.max(axis=0)
+        if self.plan.footprints:
+            bounds = self.plan.bounds
+            low = np.where(low < bounds[:2], low - 1.0, bounds[:2])
+            high = np.where(high > bounds[2:], high + 1.0, bounds[2:])
+        else:
+            low, high = low - 1.0, high + 1.0
+        (x0, y0), (x1, y1) = low.tolist(), high.tolist()
         return x0, y0, x1, y1
 
     @cached_property
@@ -172,7 +173,7 @@ def build_scene(
     Parameters
     ----------
     room, robot : str or Path
-        A name (see `assets.rooms` and `assets.robots`) or an MJCF file.
+        A name (see `assets.list_rooms` and `assets.list_robots`) or an MJCF file.
     rays_per_cone : int, optional
         Overrides how many rays sample a cone of several rays.
     specular_rings : sequence of str

@@ -18,7 +18,7 @@ from nomad_agents.extras import need
 from nomad_mj.errors import ConfigError, OutputError
 
 ROOT = "MINARI_DATASETS_PATH"  # the variable that tells Minari where datasets are
-_ID = re.compile(r"(?:[-\w]+/)*[-\w]*?-v\d+")
+_ID = re.compile(r"(?:\w[-\w]+/)*\w[-\w]*?-v\d+")
 _WHAT = "a dataset"
 
 

@@ -5,7 +5,8 @@ import math
 import mujoco
 import numpy as np
 
-from nomad_mj.scene import ROOM_PREFIX, Scene
+from nomad_mj.arenas.names import ROOM_PREFIX
+from nomad_mj.scene import Scene
 from nomad_mj.types import FloatArray
 
 _DISTANCE = 4.3  # [m] from the chase camera to what it looks at

@@ -145,7 +145,7 @@ def test_train_prints_one_line_of_json_last(run: Run, small_room: Path, tmp_path
     report = json.loads(said.out)  # the only line: the rest is for people, on standard error
     assert said.code == 0 and list(report) == TRAIN_KEYS and report["starts"] == 3
     assert report["reactions"] > 0 and report["sim_s"] > 0 and report["wall_s"] > 0
-    assert re.search(r"gave up, having solved \d of 3 starts, after \d+ decisions: ", said.err)
+    assert re.search(r"stopped, having solved \d of 3 starts, after \d+ decisions: ", said.err)
     assert [file.name for file in path.parent.iterdir()] == ["a.npz"]
 
 
@@ -216,7 +216,7 @@ def test_list_names_everything(run: Run) -> None:
         (["record", "--starts", "1", "--max-decisions", "0"], "max_decisions 0: must be 1"),
         (["demo", "--videos", "-1"], "videos -1: must be 0 or more"),
         (["demo", "--starts", "0"], "starts 0: must be 1 or more"),
-        (["demo", "--speed", "0"], "speed 0.0: must be above 0"),
+        (["demo", "--speed", "0"], "speed 0.0: must be from 0.01 to 1000"),
         (["evaluate", "--starts", "no.csv"], "'no.csv' cannot be read: No such file or directory"),
         (["evaluate", "--starts", "²"], "starts file '²' cannot be read"),
         (["evaluate", "--starts", "9" * 5000], "cannot be read: File name too long"),

@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 import shapely
@@ -6,6 +8,7 @@ from hypothesis import strategies as st
 
 from nomad_mj.arenas import FloorPlan
 from nomad_mj.errors import StartError
+from nomad_mj.scene import build_scene
 
 RADIUS = 0.25
 
@@ -123,3 +126,13 @@ def test_asking_for_places_that_are_not_there() -> None:
     with pytest.raises(StartError, match=r"found 0 of 3 places .* ask for less") as error:
         CLOSED.sample_free(3, np.random.default_rng(0), RADIUS, 0.1, [1, 1], 20.0)
     assert "\n" not in str(error.value)
+
+
+def test_a_picture_shows_goal_and_starts_wherever_things_stand(tmp_path: Path) -> None:
+    room = tmp_path / "open.xml"
+    room.write_text(
+        "<mujoco><worldbody><geom name='pillar' type='cylinder' size='0.3 0.45' pos='0 0 0.45'/>"
+        "<site name='goal' pos='4 0 0'/><site name='start_0' pos='-3 0.1 0'/></worldbody></mujoco>"
+    )
+    x0, y0, x1, y1 = build_scene(room, "nomad200").shown_bounds
+    assert (x0, x1) == (-4.0, 5.0) and (y0, y1) == pytest.approx((-0.3, 0.3), abs=0.01)

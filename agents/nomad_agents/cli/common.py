@@ -4,7 +4,7 @@ import json
 import math
 import signal
 import sys
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, cast
@@ -33,6 +33,8 @@ def print_json(values: Mapping[str, Any]) -> None:
 def _clean(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {key: _clean(inner) for key, inner in cast(Mapping[str, Any], value).items()}
+    if isinstance(value, list | tuple):
+        return [_clean(inner) for inner in cast(Sequence[Any], value)]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
@@ -55,7 +57,7 @@ def output_file(out: str, default_name: str, suffix: str) -> Path:
         path.parent.mkdir(parents=True, exist_ok=True)
         probe = path.parent / f".{path.name}.writable"
         probe.touch()
-        probe.unlink()
+        probe.unlink(missing_ok=True)  # another process may have been as quick
     except OSError as error:
         raise OutputError(f"cannot write {str(path)!r}: {error.strerror or error}") from None
     return path

@@ -1,6 +1,5 @@
 """``nomad-mj demo``: learn the paper's room, compare, and show it."""
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -73,8 +72,8 @@ class Demo(TaskOptions):
         for name, given, least in (("starts", self.starts, 1), ("videos", self.videos, 0)):
             if given < least:
                 raise ConfigError(f"{name} {given}: must be {least} or more")
-        if not 0 < self.speed < math.inf:
-            raise ConfigError(f"speed {self.speed}: must be above 0")
+        if not 0.01 <= self.speed <= 1000:
+            raise ConfigError(f"speed {self.speed}: must be from 0.01 to 1000")
         screen = console(json_wanted=self.json)
         with self.path_finding() as env, interruptible():
             path = output_file(self.out, env.scene.arena.name, ".npz")

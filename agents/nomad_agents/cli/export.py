@@ -1,5 +1,6 @@
 """``nomad-mj export``."""
 
+import re
 from contextlib import closing
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -58,7 +59,8 @@ class Export(TaskOptions):
             task = task_of(env)
             robot, arena = task.scene.robot, task.scene.arena
             agent = find_agent(self.agent, robot.layout, find_config(self.config))
-            name = self.dataset or f"nomad_mj/{arena.name}-{robot.name}-{agent.name}-v0"
+            usual = f"{arena.name}-{robot.name}-{agent.name}"
+            name = self.dataset or f"nomad_mj/{re.sub(r'[^A-Za-z0-9_-]', '_', usual)}-v0"
             root = datasets_root(self.out)
             require_new(root, name)
             starts = choose_starts(task, self.starts, self.seed).tolist()

@@ -61,6 +61,9 @@ class Reproduce:
         find_config(self.config)
         build_scene(self.room, self.robot)  # whatever is wrong with them is said now, and once
         study = Study(self.config, self.room, self.robot, self.seeds)
+        used = [(run.room, run.robot) for each in experiments for run in each.runs(study)]
+        for room, robot in dict.fromkeys(used):
+            build_scene(room, robot)
         screen = console(json_wanted=self.json)
         if expanded(self.out).suffix == ".html" and not expanded(self.out).is_dir():
             raise ConfigError(f"out {self.out!r}: must be a folder")

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated
 
 import tyro
@@ -87,7 +86,7 @@ class MakeRoom:
                         f"--{option}: only for a room that is made up: {', '.join(_MADE)}"
                     )
             return read_room(
-                Path(self.source),
+                expanded(self.source),
                 resolution=self.resolution,
                 goal=goal,
                 starts=self.starts,

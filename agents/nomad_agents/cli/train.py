@@ -237,5 +237,5 @@ def _verdict(report: dict[str, Any], training: Training) -> str:
     return (
         f"{solved} after {report['reactions']} reactions"
         if training.done
-        else (f"gave up, having {solved}, after {training.decisions} decisions")
+        else (f"stopped, having {solved}, after {training.decisions} decisions")
     )

@@ -28,7 +28,7 @@ class DeepTraining:
     reached : int
         Episodes that ended at the goal.
     virtual_collisions, bumper_contacts : int
-        Moves that ended so.
+        Moves that ended so; moves in which something was touched.
     sim_s : float
         Simulated time [s].
     """

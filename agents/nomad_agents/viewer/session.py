@@ -139,7 +139,11 @@ class Session:
             self.agent_drives, self.news = True, ""
         elif request == "reset":
             self.agent_drives = self.agent is not None
-            self._reset(self._start)
+            try:
+                self._reset(self._start)
+            except StartError as error:  # what moves is in the way; the next try is another one
+                self._let_go()
+                self.news = str(error)
         elif request == "stop":
             self._let_go()
             self.controls.hold(Wish())
