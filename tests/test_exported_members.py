@@ -35,8 +35,8 @@ PUBLIC = {
     ),
     "nomad_mj.robots": (
         "PREFIX RayIndex RobotDescription Sheet adopt collides describe_robot find_sheet "
-        "group_rays perimeter reach read_sheet report_surfaces robot_geoms set_rays_per_cone "
-        "unclip_surfaces"
+        "group_rays reach read_sheet report_surfaces robot_geoms set_rays_per_cone "
+        "solid_radius unclip_surfaces"
     ),
     "nomad_mj.tasks": (
         "BumperNoise Crosstalk FiringOrder Gyroscope InfraredEffects MotorConfig MotorEnvironment "

@@ -54,7 +54,13 @@ class Worlds:
         The other observations, as of `MotorTask`.
     """
 
-    def __init__(self, scenes: list[Scene], config: MotorConfig, random: Any, threads: int) -> None:
+    def __init__(
+        self,
+        scenes: list[Scene],
+        config: MotorConfig,
+        random: "Seed | Sequence[Seed]",
+        threads: int,
+    ) -> None:
         first = scenes[0]
         self.count = len(scenes)
         self.tasks = [

@@ -178,6 +178,7 @@ class PathFinding(dm_env.Environment):
 
     def close(self) -> None:
         """Free the simulation and its OpenGL contexts."""
+        self._over = True  # so that the next step says that it is closed
         self.motor.close()
 
 

@@ -11,6 +11,7 @@ from nomad_mj.arenas.names import MOVING, goal_site, is_moving, room_name
 from nomad_mj.errors import ModelError
 from nomad_mj.movers.drift import Drift, MovingGoal, MovingObstacles
 from nomad_mj.movers.stroll import Walker, Walkers
+from nomad_mj.robots import collides
 
 
 @dataclass(frozen=True)
@@ -188,8 +189,7 @@ def _drift(given: Drift, speed: float) -> Drift:
 def _colliding(model: mujoco.MjModel, body: int) -> list[int]:
     """Return the geoms of a body and of those on it that other things run into."""
     on_it = model.body_rootid[model.geom_bodyid] == body
-    collides = (model.geom_contype | model.geom_conaffinity) != 0
-    return [int(geom) for geom in np.flatnonzero(on_it & collides)]
+    return [int(geom) for geom in np.flatnonzero(on_it & collides(model))]
 
 
 def _check_names(model: mujoco.MjModel, room: str) -> None:

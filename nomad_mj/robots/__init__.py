@@ -1,8 +1,13 @@
 """What a robot file must offer, read from the compiled model."""
 
 from nomad_mj.robots.adopt import adopt
-from nomad_mj.robots.description import RobotDescription, describe_robot, robot_geoms
-from nomad_mj.robots.extent import collides, perimeter, reach
+from nomad_mj.robots.description import (
+    RobotDescription,
+    describe_robot,
+    robot_geoms,
+    solid_radius,
+)
+from nomad_mj.robots.extent import collides, reach
 from nomad_mj.robots.naming import PREFIX
 from nomad_mj.robots.rays import set_rays_per_cone
 from nomad_mj.robots.rings import RayIndex, group_rays
@@ -19,11 +24,11 @@ __all__ = [
     "describe_robot",
     "find_sheet",
     "group_rays",
-    "perimeter",
     "reach",
     "read_sheet",
     "report_surfaces",
     "robot_geoms",
     "set_rays_per_cone",
+    "solid_radius",
     "unclip_surfaces",
 ]

@@ -76,21 +76,31 @@ def robot_geoms(model: mujoco.MjModel) -> list[int]:
     return [int(i) for i in np.flatnonzero(own[model.geom_bodyid])]
 
 
-def _sizes(named: NamedModel, footing: Footing) -> tuple[float, float]:
-    """Return radius and height of the robot as it stands on the floor [m]."""
-    model, base = named.model, footing.base
+def solid_radius(model: mujoco.MjModel, footing: Footing) -> float:
+    """Return how far from its base what collides of the robot reaches [m]; 0 if nothing does."""
+    data, solid = _standing(model, footing), collides(model)
+    geoms = [geom for geom in robot_geoms(model) if solid[geom]]
+    return perimeter(model, data, geoms, data.xpos[footing.base])
+
+
+def _standing(model: mujoco.MjModel, footing: Footing) -> mujoco.MjData:
+    """Return where everything is when the robot stands at the origin."""
     data = mujoco.MjData(model)
     footing.place(data.qpos, Pose(0.0, 0.0, 0.0))
     mujoco.mj_kinematics(model, data)
-    geoms = robot_geoms(model)
-    solid = [g for g in geoms if collides(model)[g]]
-    radius = named.find_number("radius") or perimeter(model, data, solid, data.xpos[base])
+    return data
+
+
+def _sizes(named: NamedModel, footing: Footing) -> tuple[float, float]:
+    """Return radius and height of the robot as it stands on the floor [m]."""
+    model = named.model
+    radius = named.find_number("radius") or solid_radius(model, footing)
     if not radius > 0:
         raise named.error(
             " lacks its radius: add <custom><numeric name='radius' data=.../></custom>, or geoms "
             "that collide"
         )
-    return radius, highest(model, data, geoms)
+    return radius, highest(model, _standing(model, footing), robot_geoms(model))
 
 
 def sees_behind(rings: tuple[RangeRing, ...]) -> bool:

@@ -123,6 +123,14 @@ def reporting_surfaces(model: mujoco.MjModel) -> IntArray:
     return np.flatnonzero(rangefinder & (model.sensor_intprm[:, 0] == SURFACE_DATA))
 
 
+def _check_name(named: NamedModel, ring: str) -> None:
+    if ring in TAKEN:
+        raise named.error(
+            f": rangefinders of a ring {ring!r} would hide another observation of that name; call "
+            "them sonar_0, sonar_1, ..."
+        )
+
+
 def _check_mount(named: NamedModel, ring: str, sites: list[int], mount: int) -> None:
     model = named.model
     bodies = model.site_bodyid[sites]
@@ -167,11 +175,7 @@ def index_rays(
     for ring_name, cones in group_rays(names).items():
         members = [[sensors[p] for p in rays] for rays in cones.values()]
         sites = [[int(model.sensor_objid[s]) for s in rays] for rays in members]
-        if ring_name in TAKEN:
-            raise named.error(
-                f": rangefinders of a ring {ring_name!r} would hide another observation of that "
-                "name; call them sonar_0, sonar_1, ..."
-            )
+        _check_name(named, ring_name)
         _check_mount(named, ring_name, [site for own in sites for site in own], mount)
         _check_cutoffs(named, [sensor for own in members for sensor in own])
         rays = [_rays(model, mount, own) for own in sites]

@@ -105,7 +105,8 @@ def _solid(model: mujoco.MjModel, joint: int) -> list[int]:
     """Return the geoms of a joint's body, those that collide if there are any."""
     body = int(model.jnt_bodyid[joint])
     own = np.flatnonzero(model.geom_bodyid == body).tolist()
-    return [g for g in own if collides(model)[g]] or own
+    solid = collides(model)
+    return [geom for geom in own if solid[geom]] or own
 
 
 def _contact(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> FloatArray:

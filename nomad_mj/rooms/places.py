@@ -59,17 +59,7 @@ def furnish(
         raise ConfigError(f"goal {goal}: must be x, y in metres")
     plan = floor_plan(room)
     target = goal or room.goal or _most_open(room, plan, radius)
-    x0, y0, x1, y1 = room.bounds
-    if not (x0 <= target[0] <= x1 and y0 <= target[1] <= y1):
-        raise StartError(
-            f"room {room.name!r}: goal ({target[0]:g}, {target[1]:g}) is outside; the room reaches "
-            f"from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})"
-        )
-    if not shapely.box(x0, y0, x1, y1).buffer(_PRECISION).contains(plan.free_space(radius, target)):
-        raise StartError(
-            f"room {room.name!r}: goal ({target[0]:g}, {target[1]:g}) is outside of its walls, or "
-            "there is a gap in them"
-        )
+    _check_inside(room, plan, target, radius)
     chosen = room.starts
     if starts is not None or not chosen:
         count, fewest = (DEFAULT_STARTS, 1) if starts is None else (starts, starts)
@@ -79,6 +69,16 @@ def furnish(
     arena = Arena(room.name, np.array(target), np.array(chosen), names, ())
     check_arena(plan, arena, radius)
     return replace(room, goal=target, starts=chosen)
+
+
+def _check_inside(room: Room, plan: FloorPlan, goal: tuple[float, float], radius: float) -> None:
+    """Raise StartError for a goal that is not within the walls."""
+    what = f"room {room.name!r}: goal ({goal[0]:g}, {goal[1]:g}) is outside"
+    x0, y0, x1, y1 = room.bounds
+    if not (x0 <= goal[0] <= x1 and y0 <= goal[1] <= y1):
+        raise StartError(f"{what}; the room reaches from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g})")
+    if not shapely.box(x0, y0, x1, y1).buffer(_PRECISION).contains(plan.free_space(radius, goal)):
+        raise StartError(f"{what} of its walls, or there is a gap in them")
 
 
 def _most_open(room: Room, plan: FloorPlan, radius: float) -> tuple[float, float]:

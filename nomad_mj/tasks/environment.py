@@ -150,5 +150,5 @@ class MotorEnvironment(control.Environment):
 
     def close(self) -> None:
         """Free the simulation and its OpenGL contexts; more than once does no harm."""
-        self._closed = True
+        self._closed = self._reset_next_step = True
         self.physics.free()

@@ -10,6 +10,7 @@ are not run.
 import contextlib
 import io
 import os
+import pkgutil
 import re
 import shlex
 import subprocess
@@ -107,10 +108,16 @@ def test_snippets_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 @pytest.mark.parametrize("page", [README, *PAGES], ids=lambda page: page.stem)
 def test_every_command_that_a_page_shows_has_these_options(page: Path) -> None:
-    for snippet in snippets(page):
-        for line in snippet.text.replace("\\\n", " ").splitlines():
-            if line.startswith("nomad-mj ") and not re.search(r"\.\.\.|[|>&]|--help", line):
-                parse(COMMANDS, "", shlex.split(line, comments=True)[1:])
+    lines = [
+        line
+        for snippet in snippets(page)
+        for line in snippet.text.replace("\\\n", " ").splitlines()
+        if line.startswith("nomad-mj ") and not re.search(r"\.\.\.|[|>&]|--help", line)
+    ]
+    for line in lines:
+        words = shlex.split(line, comments=True)[1:]
+        assert type(parse(COMMANDS, "", words)) is pkgutil.resolve_name(COMMANDS[words[0]])
+    assert lines or page != README
 
 
 def anchors(page: Path) -> set[str]:

@@ -158,6 +158,6 @@ def test_after_close_every_call_says_so(task: Any) -> None:
     made.close()
     made.close()
     with pytest.raises(RuntimeError, match="has been closed"):
-        made.reset()
-    with pytest.raises(RuntimeError, match="has been closed"):
         made.step(np.zeros(made.action_spec().shape))
+    with pytest.raises(RuntimeError, match="has been closed"):
+        made.reset()

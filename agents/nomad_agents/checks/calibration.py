@@ -12,8 +12,8 @@ from nomad_mj.motion import WheeledDrive
 from nomad_mj.scene import Scene
 
 _SLIP = 0.005  # of the way, or of the turn, that odometry may be off
-_OVERSHOT = 0.05  # [m] likewise and by odometry, of a robot that can stop when it should
 _MISSED = 1.0  # [m] from where the straight way should end: no wheel is so wrongly measured
+_OVERSHOT = 0.05  # [m] likewise, but by odometry: a robot that can stop when it should is nearer
 
 
 def calibrate(scene: Scene, drifts: Sequence[Drift]) -> dict[str, float]:

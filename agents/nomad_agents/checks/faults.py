@@ -7,7 +7,7 @@ import numpy as np
 from dm_control.rl.control import PhysicsError
 
 from nomad_mj.motion import SynchroDrive
-from nomad_mj.robots import PREFIX, collides, perimeter, robot_geoms
+from nomad_mj.robots import PREFIX, solid_radius
 from nomad_mj.scene import CONTROL_TIMESTEP, Scene
 from nomad_mj.tasks import NavigationPhysics
 from nomad_mj.types import Pose
@@ -39,17 +39,13 @@ def find_faults(scene: Scene) -> list[str]:
 
 def _size(scene: Scene) -> list[str]:
     """Return a line if what collides reaches beyond the perimeter."""
-    model, base = scene.model, scene.robot.footing.base
-    data = mujoco.MjData(model)
-    scene.robot.footing.place(data.qpos, Pose(0.0, 0.0, 0.0))
-    mujoco.mj_kinematics(model, data)
-    solid = [geom for geom in robot_geoms(model) if collides(model)[geom]]
-    beyond = perimeter(model, data, solid, data.xpos[base]) - scene.robot.layout.radius
+    radius = scene.robot.layout.radius
+    beyond = solid_radius(scene.model, scene.robot.footing) - radius
     if beyond < _BEYOND:
         return []
     fault = (
-        f"its radius is {scene.robot.layout.radius:g} m, but what collides reaches {beyond:.2f} m "
-        "farther; without the number it is measured"
+        f"its radius is {radius:g} m, but what collides reaches {beyond:.2f} m farther; without "
+        "the number it is measured"
     )
     return [fault]
 

@@ -1,5 +1,6 @@
 """``nomad-mj reproduce``."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -59,11 +60,8 @@ class Reproduce:
             raise ConfigError(f"seeds {self.seeds}, jobs {self.jobs}: must be 1 or more")
         experiments = choose(self.experiments)
         find_config(self.config)
-        build_scene(self.room, self.robot)  # whatever is wrong with them is said now, and once
         study = Study(self.config, self.room, self.robot, self.seeds)
-        used = [(run.room, run.robot) for each in experiments for run in each.runs(study)]
-        for room, robot in dict.fromkeys(used):
-            build_scene(room, robot)
+        _check_scenes(experiments, study)
         screen = console(json_wanted=self.json)
         if expanded(self.out).suffix == ".html" and not expanded(self.out).is_dir():
             raise ConfigError(f"out {self.out!r}: must be a folder")
@@ -110,6 +108,15 @@ class Reproduce:
             return on_file(experiments, study, folder)
         with counted_runs(screen, count_runs(experiments, study), folder) as after_run:
             return reproduce(experiments, study, folder, self.jobs, after_run)
+
+
+def _check_scenes(experiments: Sequence[Experiment], study: Study) -> None:
+    """Build each scene of the runs: whatever is wrong with rooms and robots is said now, once."""
+    build_scene(study.room, study.robot)  # of which the runs may depend
+    used = {(run.room, run.robot): None for each in experiments for run in each.runs(study)}
+    used.pop((study.room, study.robot), None)
+    for room, robot in used:
+        build_scene(room, robot)
 
 
 def choose(names: tuple[str, ...]) -> list[Experiment]:
