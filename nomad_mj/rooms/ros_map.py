@@ -1,5 +1,6 @@
 """Maps of ROS's map server, and plain images of a floor."""
 
+import difflib
 import math
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from nomad_mj.types import FloatArray
 from nomad_mj.values import number, numbers, read_yaml
 
 MODES = ("trinary", "scale", "raw")
+_OPTIONAL = ("origin", "negate", "occupied_thresh", "free_thresh", "mode")
 _OCCUPIED, _FREE = 0.65, 0.25  # defaults of the map server in ROS 2
 _UNSURE = 0.5  # of `scale`, between free and occupied
 
@@ -25,18 +27,19 @@ def read_ros_map(path: Path) -> Occupancy:
     the lower left corner; [m], [rad]), ``negate``, ``occupied_thresh``, ``free_thresh`` and
     ``mode``: `trinary`, `scale` (of what lies between the thresholds the darker half is occupied)
     or `raw` (a pixel is the percentage). All but the first two may be left out. Transparent
-    pixels are unknown.
+    pixels are unknown. Keys of other programs are ignored.
 
     Raises
     ------
     ModelError
-        A file that is missing or no map, a value that makes no sense.
+        A file that is missing or no map, a key that is misspelt, a value that makes no sense.
     """
     what = f"map {str(path)!r}:"
     held = read_yaml(path, "room")
     for key in ("image", "resolution"):
         if key not in held:
             raise ModelError(f"{what} has no {key!r}; a map needs image and resolution")
+    _refuse_misspelt(held, what)
     image = held["image"]
     if not isinstance(image, str) or not image or "\0" in image:
         raise ModelError(f"{what} image {image!r}: must be the name of a file")
@@ -46,6 +49,15 @@ def read_ros_map(path: Path) -> Occupancy:
     brightness, opaque = read_image(path.parent / image)
     cells = _classify(brightness, opaque, held, what)
     return Occupancy(np.flipud(cells), resolution, (origin[0], origin[1], yaw))
+
+
+def _refuse_misspelt(held: dict[Any, Any], what: str) -> None:
+    """Raise ModelError for a key that is nearly one of a map's: a default would stand for it."""
+    for key in held:
+        if key in ("image", "resolution", *_OPTIONAL):
+            continue
+        for meant in difflib.get_close_matches(str(key).lower(), _OPTIONAL, 1, 0.7):
+            raise ModelError(f"{what} knows no {str(key)!r}; is it {meant!r}?")
 
 
 def read_floor_image(path: Path, resolution: float, origin: tuple[float, float]) -> Occupancy:

@@ -57,6 +57,11 @@ def test_all_kinds_of_images_say_the_same(tmp_path: Path) -> None:
     assert (read_ros_map(plain).cells == usual).all()
 
 
+def test_keys_of_other_programs_are_ignored(tmp_path: Path) -> None:
+    path = write_map(tmp_path, floor(), cost_translation_table=[0, 100], frame_id="map", floor=2)
+    assert (read_ros_map(path).cells == read_ros_map(write_map(tmp_path, floor())).cells).all()
+
+
 def test_modes_and_thresholds(tmp_path: Path) -> None:
     pixels = np.array([[0, 100, 150, 205, 255]], dtype=np.uint8)  # darkness 1, .61, .41, .2, 0
     cases: tuple[tuple[dict[str, Any], list[int]], ...] = (
@@ -131,6 +136,8 @@ YAML_MISTAKES = (
     ({"occupied_thresh": 65}, "occupied_thresh 65: must be a number from 0 to 1"),
     ({"occupied_thresh": 0.1}, "must not be above occupied_thresh"),
     ({"mode": "colour"}, "there are: trinary, scale, raw"),
+    ({"occupied_threshold": 0.5}, "no 'occupied_threshold'; is it 'occupied_thresh'?"),
+    ({"Negate": 1}, "knows no 'Negate'; is it 'negate'?"),
     ({"free_thresh": 0.0}, "has no free space"),
 )
 

@@ -79,9 +79,11 @@ class Sweep:
         for name in self.metric:
             if "=" in name:
                 raise ConfigError(f"sweep: {name!r} follows --metric: options come before it")
-        if self.only_read and (self.options or self.grid):
+        selects = (self.options, self.grid, self.seeds, self.starts)
+        if self.only_read and selects != ((), "", Sweep.seeds, Sweep.starts):
             raise ConfigError(
-                "sweep: --only-read shows all there is in --out, and takes no options"
+                "sweep: --only-read shows all there is in --out, and takes no options, --grid, "
+                "--seeds or --starts"
             )
         if self.address and self.jobs != Sweep.jobs:
             raise ConfigError(
