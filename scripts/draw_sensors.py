@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Wedge
 from nomad_agents.experiments.figures.room import Panel, rooms
-from nomad_agents.experiments.figures.style import BLUE, INK, ORANGE
+from nomad_agents.studies.style import BLUE, INK, ORANGE
 
 import nomad_mj
 from nomad_mj import (

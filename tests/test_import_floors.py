@@ -24,7 +24,18 @@ FLOORS = (
     ("video", "batch"),
     ("gym",),
 )
-FLOOR = {part: floor for floor, parts in enumerate(FLOORS) for part in parts}
+AGENT_FLOORS = (
+    ("agent", "extras", "paths", "task_options"),
+    ("reactive_planner", "episode", "collecting", "viewer"),
+    ("baselines", "checkpoint", "training", "recording", "dataset"),
+    ("evaluation", "curves", "speed"),
+    ("deep",),
+    ("registry",),
+    ("studies",),
+    ("learners", "experiments", "checks"),
+    ("benchmark", "sweeps"),
+    ("cli",),
+)
 PURE = {part for parts in FLOORS[:4] for part in parts if not part.startswith("_")}
 CORE = ("agent", "reactive_planner", "baselines")
 # The rest of `deep` trains, with PyTorch.
@@ -56,17 +67,28 @@ def part_of(path: Path, top: Path) -> str:
     return path.relative_to(top).parts[0].removesuffix(".py")
 
 
-@pytest.mark.parametrize("path", LIBRARY, ids=lambda path: str(path.relative_to(ROOT)))
-def test_the_library_imports_downward_only(path: Path) -> None:
-    own = part_of(path, ROOT / "nomad_mj")
+def refuse_upward(path: Path, top: Path, floors: tuple[tuple[str, ...], ...]) -> None:
+    """Fail where a file imports of its own package what lies on its floor or above."""
+    floor = {part: number for number, parts in enumerate(floors) for part in parts}
+    own = part_of(path, top)
     for module in imports(path):
-        top, _, rest = module.partition(".")
-        assert top != "nomad_agents", f"the library knows no agent, but imports {module}"
-        if top != "nomad_mj" or own == "__init__":
+        package, _, rest = module.partition(".")
+        if package != top.name or own == "__init__":
             continue
         imported = rest.partition(".")[0]
-        assert imported in FLOOR, f"{module}: not on any floor"
-        assert imported == own or FLOOR[imported] < FLOOR[own], f"{own} must not import {module}"
+        assert imported in floor, f"{module}: not on any floor"
+        assert imported == own or floor[imported] < floor[own], f"{own} must not import {module}"
+
+
+@pytest.mark.parametrize("path", LIBRARY, ids=lambda path: str(path.relative_to(ROOT)))
+def test_the_library_imports_downward_only(path: Path) -> None:
+    assert not [module for module in imports(path) if module.partition(".")[0] == "nomad_agents"]
+    refuse_upward(path, ROOT / "nomad_mj", FLOORS)
+
+
+@pytest.mark.parametrize("path", AGENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_agents_and_studies_import_downward_only(path: Path) -> None:
+    refuse_upward(path, ROOT / "agents" / "nomad_agents", AGENT_FLOORS)
 
 
 @pytest.mark.parametrize("path", LIBRARY, ids=lambda path: str(path.relative_to(ROOT)))

@@ -37,7 +37,7 @@ class Checkpoint(NamedTuple):
     training : dict
         The state of `training.Training`, as data.
     conditions : dict
-        Goal, movers and errors of the sensors, where they are told; see `cli.task_options`.
+        Goal, movers and errors of the sensors, where they are told; see `task_options`.
     """
 
     agent: ReactivePlanner

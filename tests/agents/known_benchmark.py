@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 from nomad_agents.benchmark.run import BenchmarkRun
-from nomad_agents.experiments.runs import Result, Row
 from nomad_agents.learners import find_learner
+from nomad_agents.studies.runs import Result, Row
 
 
 def made_up_run(

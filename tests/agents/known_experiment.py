@@ -11,7 +11,7 @@ from nomad_agents.experiments.experiment import (
     TableRow,
     Verdict,
 )
-from nomad_agents.experiments.runs import Result, Row, Run
+from nomad_agents.studies.runs import Result, Row, Run
 
 
 class Known(Experiment):

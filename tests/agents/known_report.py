@@ -7,11 +7,7 @@ from typing import NamedTuple
 from matplotlib.figure import Figure
 from nomad_agents.experiments.experiment import Verdict
 from nomad_agents.experiments.report import NoVideo, Section
-
-
-class Table(NamedTuple):
-    headings: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
+from nomad_agents.studies.tables import TextTable
 
 
 class Picture(NamedTuple):
@@ -25,7 +21,8 @@ def make_section(folder: Path) -> Section:
     figure.add_subplot().plot([0, 1, 0])
     for suffix in ("png", "pdf"):
         figure.savefig(folder / f"a.{suffix}", dpi=160)
-    table = Table(
+    table = TextTable(
+        "learning",
         ("", "paper", "ours: median [quartiles]", "ours: IQM (95 %)", "planner at every decision"),
         (
             ("seeds that solve all starts", "1 of 1", "20 of 20", "", ""),

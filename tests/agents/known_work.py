@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from nomad_agents.experiments.experiment import LEARNER
-from nomad_agents.experiments.runs import Result, Run
+from nomad_agents.studies.runs import Result, Run
 
 from nomad_mj.errors import ConfigError
 

@@ -22,7 +22,7 @@ from nomad_agents.benchmark.tables import (
 )
 from nomad_agents.episode import Episode
 from nomad_agents.evaluation import Trial
-from nomad_agents.experiments.runs import Result
+from nomad_agents.studies.runs import Result
 
 SCORES = st.lists(
     st.lists(st.floats(0, 1), min_size=1, max_size=5).map(np.array), min_size=1, max_size=4

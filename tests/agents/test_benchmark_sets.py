@@ -12,10 +12,10 @@ from nomad_agents.benchmark.conditions import CONDITIONS, condition_of, find_con
 from nomad_agents.benchmark.plan import MOST_SEEDS, Plan, plan_runs
 from nomad_agents.benchmark.sets import SETS, Case, find_set, room_sets, write_room
 from nomad_agents.evaluation import draw_starts
-from nomad_agents.experiments.measures import UNSEEN_SEED, unseen_starts
 from nomad_agents.learners import LEARNERS, Lesson, Untaught, find_learner, usual_agents
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.registry import SETTINGS, find_config
+from nomad_agents.studies.measures import UNSEEN_SEED, unseen_starts
 from nomad_agents.training import Training, TrainingConfig, stream, train
 
 import nomad_mj

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 from nomad_agents.evaluation import draw_starts
-from nomad_agents.experiments import measures
 from nomad_agents.experiments.experiment import (
     LEARNER,
     PLANNER,
@@ -26,7 +25,8 @@ from nomad_agents.experiments.paper import (
     robots,
 )
 from nomad_agents.experiments.reproduction import count_runs, trainings
-from nomad_agents.experiments.runs import Result, Row, Run, do_runs
+from nomad_agents.studies import measures
+from nomad_agents.studies.runs import Result, Row, Run, do_runs
 
 from nomad_mj.envs import PathFinding
 from nomad_mj.types import FloatArray

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from known_experiment import known_result
 from nomad_agents.experiments.experiment import PLANNER
-from nomad_agents.experiments.export import export
-from nomad_agents.experiments.runs import Result
+from nomad_agents.studies.export import export
+from nomad_agents.studies.runs import Result
 
 from nomad_mj.errors import OutputError
 

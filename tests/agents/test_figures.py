@@ -18,10 +18,10 @@ from nomad_agents.experiments.figures.timing import draw_timing
 from nomad_agents.experiments.figures.variants import Measure, draw_variants
 from nomad_agents.experiments.lattice import lattice
 from nomad_agents.experiments.pictures import Action, Film, Way, action_map
-from nomad_agents.experiments.runs import Row
-from nomad_agents.experiments.statistics import spread
 from nomad_agents.reactive_planner import FAITHFUL
 from nomad_agents.registry import make_agent
+from nomad_agents.studies.runs import Row
+from nomad_agents.studies.statistics import spread
 
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import OutputError

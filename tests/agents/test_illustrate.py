@@ -8,7 +8,7 @@ from known_experiment import Known, known_result
 from nomad_agents.experiments.experiment import PLANNER, STRAIGHT, TableRow
 from nomad_agents.experiments.illustrate import illustrate
 from nomad_agents.experiments.paper import EXPERIMENTS
-from nomad_agents.experiments.runs import Result, Row
+from nomad_agents.studies.runs import Result, Row
 from test_figures import ACTIONS, FILM, WAYS, curve, size_of_png
 
 TABLE = (

@@ -7,10 +7,11 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from known_report import Picture, Table, make_section, three
+from known_report import Picture, make_section, three
 from nomad_agents.experiments.experiment import Study, Verdict
 from nomad_agents.experiments.report import NoVideo, Section, provenance, write_report
-from nomad_agents.experiments.runs import Result, Run
+from nomad_agents.studies.runs import Result, Run
+from nomad_agents.studies.tables import TextTable
 
 import nomad_mj
 from nomad_mj.errors import OutputError
@@ -121,7 +122,7 @@ def test_names_are_text_whatever_they_are(section: Section, tmp_path: Path) -> N
         ODD,
         ODD,
         Verdict("holds", ODD),
-        Table(("", ODD), ((ODD, ODD),)),
+        TextTable(ODD, ("", ODD), ((ODD, ODD),)),
         [Picture(section.illustrations[0].path, ODD)],
         NoVideo(ODD),
         ODD,

@@ -14,9 +14,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from known_work import die_at_two, draw, draw_slowly, fail_at_two, runs
-from nomad_agents.experiments import runs as module
-from nomad_agents.experiments.digest import digest
-from nomad_agents.experiments.runs import Result, Run, do_runs, stored_result
+from nomad_agents.studies import runs as module
+from nomad_agents.studies.digest import digest
+from nomad_agents.studies.runs import Result, Run, do_runs, stored_result
 
 from nomad_mj.errors import ConfigError, OutputError, WorkerError
 
@@ -25,7 +25,7 @@ CODE = """
 import sys
 from pathlib import Path
 from known_work import draw_slowly, runs
-from nomad_agents.experiments.runs import do_runs
+from nomad_agents.studies.runs import do_runs
 if __name__ == "__main__":
     do_runs(runs(40), draw_slowly, Path(sys.argv[1]), 2, lambda result: print(1, flush=True))
 """

@@ -14,9 +14,9 @@ from nomad_agents.baselines import Straight
 from nomad_agents.experiments import showreel
 from nomad_agents.experiments.experiment import LEARNER, Experiment, Showcase, Study, Verdict
 from nomad_agents.experiments.report import NoVideo, Video
-from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.reactive_planner.config import FAITHFUL
+from nomad_agents.studies.runs import Result, Run
 from PIL import Image
 
 import nomad_mj

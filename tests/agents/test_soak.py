@@ -7,8 +7,8 @@ from typing import Any
 import mujoco
 import pytest
 from nomad_agents.cli.main import main
-from nomad_agents.experiments import soak as soaking
-from nomad_agents.experiments.soak import soak
+from nomad_agents.speed import soak as soaking
+from nomad_agents.speed.soak import soak
 
 
 @pytest.mark.parametrize("robots", [1, 4])

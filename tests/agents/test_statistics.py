@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from nomad_agents.experiments.statistics import Spread, spread
+from nomad_agents.studies.statistics import Spread, spread
 
 from nomad_mj.types import FloatArray
 

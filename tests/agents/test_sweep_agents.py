@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 from nomad_agents.checkpoint import save_checkpoint
 from nomad_agents.deep import LEARNERS as DEEP
-from nomad_agents.experiments.runs import Row
 from nomad_agents.learners import LEARNERS
 from nomad_agents.reactive_planner import FAITHFUL, ReactivePlanner
+from nomad_agents.studies.runs import Row
 from nomad_agents.sweeps.grid import Grid, SweepRun, read_grid
 from nomad_agents.sweeps.options import catalogue
 from nomad_agents.sweeps.store import as_table

@@ -10,12 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nomad_agents.baselines import VfhConfig
 from nomad_agents.cli.main import main
-from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.deep import SacSettings
 from nomad_agents.reactive_planner import TUNED
 from nomad_agents.sweeps.grid import Grid, as_data, from_data, meant, read_grid, show
 from nomad_agents.sweeps.options import Option, catalogue, find_option, read_value
 from nomad_agents.sweeps.settings import settle
+from nomad_agents.task_options import TaskOptions
 
 NUMBERS = st.lists(st.floats(0.01, 0.99), min_size=1, max_size=4, unique=True)
 GRIDS = st.dictionaries(

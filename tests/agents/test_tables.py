@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from known_experiment import Known, known_result
 from nomad_agents.experiments.experiment import LEARNER, PLANNER, STRAIGHT, TableRow
-from nomad_agents.experiments.runs import Result
-from nomad_agents.experiments.tables import HEADINGS, as_markdown, as_rich, make_table, strata
+from nomad_agents.experiments.tables import HEADINGS, for_terminal, make_table, strata
+from nomad_agents.studies.runs import Result
+from nomad_agents.studies.tables import as_markdown, as_rich
 from rich.console import Console
 
 ROWS = (
@@ -51,7 +52,7 @@ def results() -> list[Result]:
 def shown(experiment: Known, results: list[Result], width: int = 200) -> str:
     file = io.StringIO()
     console = Console(file=file, width=width, color_system=None)
-    console.print(as_rich(make_table(experiment, results)))
+    console.print(as_rich(for_terminal(make_table(experiment, results))))
     return file.getvalue()
 
 

@@ -16,8 +16,8 @@ from nomad_agents.cli.demo import Demo
 from nomad_agents.cli.evaluate import Evaluate
 from nomad_agents.cli.main import main
 from nomad_agents.cli.record import Record
-from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.cli.train import Train
+from nomad_agents.task_options import TaskOptions
 
 from nomad_mj import (
     BumperNoise,

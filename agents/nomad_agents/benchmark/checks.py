@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from nomad_agents.agent import Agent
 from nomad_agents.evaluation import draw_starts, evaluate, summarise
-from nomad_agents.experiments.runs import Row
+from nomad_agents.studies.runs import Row
 from nomad_mj.envs import PathFinding
 
 CHECK_SEED = 2_000_000  # far from the seeds that train and from that of the final evaluation

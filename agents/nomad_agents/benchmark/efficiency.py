@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from nomad_agents.benchmark.checks import MASTERED
-from nomad_agents.experiments.runs import Result
+from nomad_agents.studies.runs import Result
 from nomad_mj.types import FloatArray
 
 

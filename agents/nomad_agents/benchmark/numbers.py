@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from nomad_agents.benchmark.run import BenchmarkRun
-from nomad_agents.experiments.runs import Result, Row
-from nomad_agents.experiments.statistics import Spread, spread
+from nomad_agents.studies.runs import Result, Row
+from nomad_agents.studies.statistics import Spread, spread
 from nomad_mj.types import FloatArray
 
 

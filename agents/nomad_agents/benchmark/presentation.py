@@ -16,9 +16,9 @@ from nomad_agents.benchmark.tables import (
     learning_table,
 )
 from nomad_agents.checkpoint import write_atomically
-from nomad_agents.experiments.export import export
-from nomad_agents.experiments.runs import Result
-from nomad_agents.experiments.tables import TextTable, as_markdown
+from nomad_agents.studies.export import export
+from nomad_agents.studies.runs import Result
+from nomad_agents.studies.tables import TextTable, as_markdown
 
 TOLD = ("success_rate", "strict_success_rate", "spl", "barn_score")
 

@@ -16,9 +16,9 @@ from nomad_agents.benchmark.checks import Checks, until_mastered
 from nomad_agents.benchmark.conditions import condition_of, find_condition
 from nomad_agents.deep.extra import DEEP_PACKAGES
 from nomad_agents.evaluation import Trial
-from nomad_agents.experiments.measures import assess, episode_rows
-from nomad_agents.experiments.runs import Result, Row, Run
 from nomad_agents.learners import Learner, Lesson, find_learner
+from nomad_agents.studies.measures import assess, episode_rows
+from nomad_agents.studies.runs import Result, Row, Run
 from nomad_mj.envs import PathFinding
 from nomad_mj.scene import build_scene
 

@@ -6,8 +6,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from nomad_agents.benchmark.numbers import Group, has, spread_of, strata
-from nomad_agents.experiments.runs import Result
-from nomad_agents.experiments.tables import (
+from nomad_agents.studies.runs import Result
+from nomad_agents.studies.tables import (
     TextTable,
     mean_cell,
     median_cell,

@@ -10,7 +10,7 @@ from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon, Wedge
 
-from nomad_agents.experiments.figures.style import (
+from nomad_agents.studies.style import (
     BLUE,
     INK,
     OBSTACLE,

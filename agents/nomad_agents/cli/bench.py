@@ -8,14 +8,14 @@ from rich.table import Table
 
 import nomad_mj
 from nomad_agents.cli.common import console, print_json
-from nomad_agents.experiments.soak import Soaked, soak
-from nomad_agents.experiments.speed import control_step_ratio, decision_times, training_ratio
-from nomad_agents.experiments.speed_of_many import (
+from nomad_agents.speed.of_many import (
     async_ratio,
     batch_ratio,
     perception_ratio,
     simulated_rate,
 )
+from nomad_agents.speed.ratios import control_step_ratio, decision_times, training_ratio
+from nomad_agents.speed.soak import Soaked, soak
 from nomad_mj.envs import DEFAULT_ROOM
 from nomad_mj.errors import ConfigError, RenderError
 from nomad_mj.video import frame_costs

@@ -13,9 +13,9 @@ from nomad_agents.benchmark.run import BenchmarkRun, work
 from nomad_agents.benchmark.sets import SETS, TaskSet, find_set, room_sets
 from nomad_agents.cli.common import console, interruptible, output_file, print_json
 from nomad_agents.cli.progress import counted_runs
-from nomad_agents.experiments.runs import Result, do_runs, stored_result
-from nomad_agents.experiments.tables import as_rich
 from nomad_agents.learners import usual_agents
+from nomad_agents.studies.runs import Result, do_runs, stored_result
+from nomad_agents.studies.tables import as_rich
 from nomad_mj.envs import DEFAULT_ROBOT
 from nomad_mj.errors import ConfigError
 

@@ -10,7 +10,6 @@ from rich.table import Table
 from nomad_agents.agent import Agent
 from nomad_agents.cli.common import console, interruptible, output_file, print_json
 from nomad_agents.cli.evaluate import format_metric, run_evaluation
-from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.cli.train import run_training
 from nomad_agents.evaluation import Trial, draw_starts, summarise
 from nomad_agents.experiments.figures import Panel, draw_actions, draw_paths
@@ -19,6 +18,7 @@ from nomad_agents.experiments.pictures import LATTICE, action_map, spread_starts
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.recording import record
 from nomad_agents.registry import find_config, make_agent
+from nomad_agents.task_options import TaskOptions
 from nomad_agents.training import Training, TrainingConfig, training_report
 from nomad_mj.envs import DEFAULT_ROOM, PathFinding
 from nomad_mj.errors import ConfigError, RenderError

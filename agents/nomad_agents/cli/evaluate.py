@@ -12,9 +12,9 @@ from nomad_agents.agent import Agent
 from nomad_agents.checkpoint import write_atomically
 from nomad_agents.cli.common import console, interruptible, output_file, print_json
 from nomad_agents.cli.progress import trial_progress
-from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.evaluation import Trial, draw_starts, evaluate, read_starts, summarise
 from nomad_agents.registry import find_agent, find_config
+from nomad_agents.task_options import TaskOptions
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import ConfigError
 from nomad_mj.types import FloatArray

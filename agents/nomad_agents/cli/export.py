@@ -10,11 +10,11 @@ import gymnasium
 from nomad_agents.cli.common import console, interruptible, print_json
 from nomad_agents.cli.evaluate import choose_starts, require_decisions
 from nomad_agents.cli.progress import trial_progress
-from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.collecting import collect, task_of
 from nomad_agents.dataset import datasets_root, require_new, write_dataset
 from nomad_agents.extras import need
 from nomad_agents.registry import find_agent, find_config
+from nomad_agents.task_options import TaskOptions
 from nomad_mj.assets import find_robot, find_room
 from nomad_mj.gym.registration import PATH_FINDING
 

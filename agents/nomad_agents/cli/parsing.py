@@ -73,23 +73,6 @@ def parse(commands: Mapping[str, str], about: str, arguments: Sequence[str]) -> 
     return command
 
 
-def parse_place(what: str, text: str) -> tuple[float, float] | None:
-    """Return the place that ``X,Y`` names [m], None for no text.
-
-    Raises
-    ------
-    ConfigError
-        Anything but two finite numbers.
-    """
-    if not text:
-        return None
-    try:
-        x, y = (float(part) for part in text.split(","))
-    except ValueError:
-        raise ConfigError(f"{what} {text!r}: must be X,Y in metres, such as 8,2.5") from None
-    return x, y
-
-
 def _unknown_argument(name: str, command: type[Any], given: str) -> ConfigError:
     """Return the error of an argument that a command does not take."""
     hints = get_type_hints(command, include_extras=True)

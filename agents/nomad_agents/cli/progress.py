@@ -18,8 +18,8 @@ from rich.text import Text
 from typing_extensions import Self
 
 from nomad_agents.deep.training import DeepTraining
-from nomad_agents.experiments.runs import Result
 from nomad_agents.reactive_planner import ReactivePlanner
+from nomad_agents.studies.runs import Result
 from nomad_agents.training import Training
 
 RECENT = 50  # episodes

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from nomad_agents.cli.common import console, interruptible, output_file, print_json
 from nomad_agents.cli.evaluate import choose_starts, require_decisions
-from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.recording import record
 from nomad_agents.registry import find_agent, find_config
+from nomad_agents.task_options import TaskOptions
 from nomad_mj.tasks import Start
 from nomad_mj.video.layout import default_size
 

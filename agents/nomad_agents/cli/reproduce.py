@@ -14,9 +14,10 @@ from nomad_agents.experiments.experiment import Experiment, Study
 from nomad_agents.experiments.paper import EXPERIMENTS, EXTRA
 from nomad_agents.experiments.presentation import find, numbers, present
 from nomad_agents.experiments.reproduction import Results, count_runs, on_file, reproduce
-from nomad_agents.experiments.tables import as_rich
+from nomad_agents.experiments.tables import for_terminal
 from nomad_agents.paths import expanded
 from nomad_agents.registry import find_config
+from nomad_agents.studies.tables import as_rich
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
 from nomad_mj.errors import ConfigError, UnknownNameError
 from nomad_mj.scene import build_scene
@@ -78,7 +79,7 @@ class Reproduce:
                     "every case; run without --only-read"
                 )
             for finding in findings:
-                screen.print(as_rich(finding.table))
+                screen.print(as_rich(for_terminal(finding.table)))
                 screen.print(f"{finding.verdict.holds}: {finding.verdict.reason}", soft_wrap=True)
             with screen.status("") as status:
                 remarks = present(

@@ -8,8 +8,8 @@ import tyro
 
 from nomad_agents.checkpoint import write_atomically
 from nomad_agents.cli.common import console, print_json
-from nomad_agents.cli.parsing import parse_place
 from nomad_agents.paths import expanded
+from nomad_agents.task_options import parse_place
 from nomad_mj.errors import ConfigError
 from nomad_mj.rooms import (
     Room,

@@ -14,11 +14,11 @@ from rich.console import Console
 from nomad_agents.checkpoint import write_atomically
 from nomad_agents.cli.common import console, interruptible, output_file, print_json
 from nomad_agents.cli.progress import run_progress
-from nomad_agents.experiments.pool import do_in_processes
-from nomad_agents.experiments.runs import Row
-from nomad_agents.experiments.statistics import spread
-from nomad_agents.experiments.tables import as_markdown, as_rich
 from nomad_agents.paths import expanded
+from nomad_agents.studies.pool import do_in_processes
+from nomad_agents.studies.runs import Row
+from nomad_agents.studies.statistics import spread
+from nomad_agents.studies.tables import as_markdown, as_rich
 from nomad_agents.sweeps.grid import SweepRun, describe, read_grid
 from nomad_agents.sweeps.ray_pool import do_on_ray, has_ray
 from nomad_agents.sweeps.store import TABLE, Store, locked, open_store, read_store

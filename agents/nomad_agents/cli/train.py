@@ -11,17 +11,17 @@ from nomad_agents.checkpoint import load_checkpoint, save_checkpoint
 from nomad_agents.cli.common import console, interruptible, output_file, print_json
 from nomad_agents.cli.progress import TrainingProgress
 from nomad_agents.cli.resuming import require_same_files, require_same_training, training_of
-from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.cli.train_deep import run_deep_training
 from nomad_agents.curves import Curves, has_curves
 from nomad_agents.deep import LEARNERS
 from nomad_agents.deep.environment import make_env
 from nomad_agents.deep.extra import require_extra
 from nomad_agents.deep.training import require_budget
-from nomad_agents.experiments.digest import digests
 from nomad_agents.paths import expanded
 from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner
 from nomad_agents.registry import find_agent, find_config
+from nomad_agents.studies.digest import digests
+from nomad_agents.task_options import TaskOptions
 from nomad_agents.training import Training, TrainingConfig, train, training_report
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import ConfigError, OutputError

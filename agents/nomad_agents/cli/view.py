@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from nomad_agents.cli.common import console, interruptible
-from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.registry import find_agent, find_config
+from nomad_agents.task_options import TaskOptions
 from nomad_agents.viewer import Session, has_screen, view_in_browser, view_in_window
 from nomad_agents.viewer.controls import Controls
 from nomad_mj._gl import require_gl

@@ -37,7 +37,7 @@ class DeepFile(NamedTuple):
     training : dict
         How far training was (``seed``, ``decisions``, ``sim_s``, ``packages``), as data.
     conditions : dict
-        Goal, movers and errors of the sensors; see `cli.task_options`.
+        Goal, movers and errors of the sensors; see `task_options`.
     """
 
     agent: DeepAgent

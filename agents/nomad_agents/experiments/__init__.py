@@ -1,1 +1,1 @@
-"""What is measured and drawn of agents: figures, speed."""
+"""The paper's experiments over seeds, and all that is made of them."""

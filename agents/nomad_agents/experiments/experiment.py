@@ -10,8 +10,8 @@ import numpy as np
 
 from nomad_agents.agent import Agent
 from nomad_agents.baselines import Planner, Straight
-from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.reactive_planner import ReactivePlanner
+from nomad_agents.studies.runs import Result, Run
 from nomad_mj.envs import PathFinding
 from nomad_mj.tasks import Start
 from nomad_mj.types import FloatArray

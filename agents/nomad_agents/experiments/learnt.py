@@ -1,6 +1,5 @@
 """Agents that have learnt, with the curve of their learning, kept for the experiments after it."""
 
-from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 
@@ -8,61 +7,16 @@ import nomad_mj
 from nomad_agents.agent import Agent
 from nomad_agents.checkpoint import load_checkpoint, save_checkpoint
 from nomad_agents.experiments.experiment import LEARNER
-from nomad_agents.experiments.runs import Result, Row, Run, stored_result
 from nomad_agents.reactive_planner import ReactivePlanner, ReactivePlannerConfig
 from nomad_agents.registry import find_config, make_agent
-from nomad_agents.training import Training, TrainingConfig, train, training_report
+from nomad_agents.studies.learning import learn
+from nomad_agents.studies.runs import Result, Run, stored_result
+from nomad_agents.training import Training, TrainingConfig
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import OutputError
 
 TRAINING = "training"
 _MOST_PASSES = 40
-_PER_PASS = ("decisions", "reactions", "plannings", "virtual_collisions", "bumper_contacts")
-
-
-def learn(
-    env: PathFinding,
-    agent: ReactivePlanner,
-    config: TrainingConfig,
-    watch: Callable[[Training], None] | None = None,
-) -> tuple[Row, list[Row]]:
-    """Train an agent; return what it took and one entry of its learning curve a pass.
-
-    `watch` is called after each episode.
-
-    Returns
-    -------
-    dict
-        `training_report`, names beginning with ``learn_``; ``learn_solved_all``: whether the last
-        test solved every start.
-    list of dict
-        Counts since the beginning, and starts solved in the test after the pass. How many are
-        solved is told here and there of `whole_tests` alone.
-    """
-    curve: list[Row] = []
-    before = agent.plannings
-    starts = len(config.chosen(len(env.scene.arena.starts)))
-
-    def after_episode(training: Training) -> None:
-        if training.next_start == 0 and not training.testing:  # a test has just ended
-            held = asdict(training)
-            entry = {name: held[name] for name in _PER_PASS}
-            entry["plannings"] -= before
-            entry |= {"pass": len(curve) + 1, "starts": starts}
-            if config.whole_tests:
-                entry["solved"] = training.solved
-            curve.append(entry)
-        if watch is not None:
-            watch(training)
-
-    training = train(env, agent, config, Training(), after_episode)
-    report = training_report(env, agent, training) | {"starts": starts}
-    report["plannings"] -= before
-    del report["wall_s"]  # differs from run to run
-    if not config.whole_tests:
-        del report["solved"]
-    report["solved_all"] = training.done
-    return {f"learn_{name}": value for name, value in report.items()}, curve
 
 
 def training_run(run: Run) -> Run:

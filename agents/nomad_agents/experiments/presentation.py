@@ -14,15 +14,16 @@ from nomad_agents.experiments.experiment import (
     Study,
     Verdict,
 )
-from nomad_agents.experiments.export import export
 from nomad_agents.experiments.illustrate import Illustration, illustrate
 from nomad_agents.experiments.learnt import TRAINING
 from nomad_agents.experiments.report import NoVideo, Section, Video, provenance, write_report
 from nomad_agents.experiments.reproduction import Results, count_runs, trainings
-from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.experiments.showreel import film
-from nomad_agents.experiments.statistics import spread
-from nomad_agents.experiments.tables import TextTable, as_markdown, make_table, strata
+from nomad_agents.experiments.tables import make_table, strata
+from nomad_agents.studies.export import export
+from nomad_agents.studies.runs import Result, Run
+from nomad_agents.studies.statistics import spread
+from nomad_agents.studies.tables import TextTable, as_markdown
 from nomad_mj.envs import DEFAULT_ROBOT, DEFAULT_ROOM
 
 PARTIAL = "%d of %d runs so far"

@@ -6,7 +6,7 @@ from pathlib import Path
 from nomad_agents.experiments.experiment import Experiment, Study
 from nomad_agents.experiments.learnt import TRAINING, forget_lost, train_room, training_run
 from nomad_agents.experiments.paper import EXPERIMENTS
-from nomad_agents.experiments.runs import Result, Run, do_runs, stored_result
+from nomad_agents.studies.runs import Result, Run, do_runs, stored_result
 
 Results = dict[str, list[Result]]
 

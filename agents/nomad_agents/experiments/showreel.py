@@ -20,8 +20,8 @@ from nomad_agents.checkpoint import write_atomically
 from nomad_agents.episode import Episode, run_episode
 from nomad_agents.experiments.experiment import Experiment, Showcase, Study
 from nomad_agents.experiments.report.section import NoVideo, Video
-from nomad_agents.experiments.runs import PACKAGES
 from nomad_agents.recording import PAUSES, record
+from nomad_agents.studies.runs import PACKAGES
 from nomad_agents.training import stream
 from nomad_mj.errors import OutputError, RenderError
 

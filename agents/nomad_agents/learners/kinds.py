@@ -12,11 +12,11 @@ from nomad_agents.deep import DeepAgent, DeepSettings
 from nomad_agents.deep.environment import make_env
 from nomad_agents.deep.extra import require_extra
 from nomad_agents.deep.training import DeepTraining, require_budget, train_deep
-from nomad_agents.experiments.learnt import learn
-from nomad_agents.experiments.runs import Row
 from nomad_agents.learners.learner import Learner, Lesson
 from nomad_agents.reactive_planner import CONFIGS, ReactivePlanner, ReactivePlannerConfig
 from nomad_agents.registry import SETTINGS, find_config, make_agent
+from nomad_agents.studies.learning import learn
+from nomad_agents.studies.runs import Row
 from nomad_agents.training import Training, TrainingConfig
 from nomad_mj.errors import ConfigError
 from nomad_mj.perception import OBSERVATIONS

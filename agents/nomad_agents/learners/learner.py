@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from nomad_agents.agent import Agent
-from nomad_agents.experiments.runs import Row
+from nomad_agents.studies.runs import Row
 from nomad_mj.envs import PathFinding
 
 

@@ -8,11 +8,11 @@ from functools import cache
 from typing import Any, Literal, NamedTuple, get_args, get_origin, get_type_hints
 
 from nomad_agents.baselines import Planner, RandomMoves, Straight
-from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.deep import LEARNERS as DEEP
 from nomad_agents.learners import LEARNERS
 from nomad_agents.reactive_planner import ReactivePlanner, ReactivePlannerConfig
 from nomad_agents.registry import AGENTS, SETTINGS, find_config
+from nomad_agents.task_options import TaskOptions
 from nomad_agents.training import TrainingConfig
 from nomad_mj.errors import ConfigError
 from nomad_mj.perception import OBSERVATIONS, Observation

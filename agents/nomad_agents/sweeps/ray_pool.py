@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from importlib.util import find_spec
 from typing import Any
 
-from nomad_agents.experiments.pool import TRIES, Done, Item, refuse_lost
+from nomad_agents.studies.pool import TRIES, Done, Item, refuse_lost
 from nomad_mj.errors import ConfigError, WorkerError
 
 _STORE = 80 * 2**20  # bytes of shared memory, nearly Ray's least: results are small

@@ -5,11 +5,8 @@ from dataclasses import replace
 from typing import Any, NamedTuple, get_type_hints
 
 from nomad_agents.agent import Agent
-from nomad_agents.cli.task_options import TaskOptions
 from nomad_agents.deep import LEARNERS as DEEP
 from nomad_agents.deep.training import require_budget
-from nomad_agents.experiments.digest import digest
-from nomad_agents.experiments.runs import Row
 from nomad_agents.learners import (
     LEARNERS,
     DeepLearner,
@@ -21,6 +18,8 @@ from nomad_agents.learners import (
 from nomad_agents.paths import expanded
 from nomad_agents.reactive_planner import FAITHFUL, ReactivePlanner, ReactivePlannerConfig
 from nomad_agents.registry import AGENTS, SETTINGS, find_agent, find_config
+from nomad_agents.studies.digest import digest
+from nomad_agents.studies.runs import Row
 from nomad_agents.sweeps.options import (
     AGENT,
     CONFIG,
@@ -33,6 +32,7 @@ from nomad_agents.sweeps.options import (
     catalogue,
     sizes,
 )
+from nomad_agents.task_options import TaskOptions
 from nomad_agents.training import TrainingConfig
 
 

@@ -18,7 +18,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from nomad_agents.checkpoint import write_atomically
-from nomad_agents.experiments.runs import Row
+from nomad_agents.studies.runs import Row
 from nomad_agents.sweeps.grid import Cell, Grid, SweepRun, as_data, from_data
 from nomad_mj.errors import ConfigError, OutputError
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from nomad_agents.experiments.figures.sweep import Panel, Series, draw_sweep
-from nomad_agents.experiments.statistics import spread
-from nomad_agents.experiments.tables import TextTable, mean_cell, median_cell
+from nomad_agents.studies.statistics import spread
+from nomad_agents.studies.tables import TextTable, mean_cell, median_cell
+from nomad_agents.sweeps.figure import Panel, Series, draw_sweep
 from nomad_agents.sweeps.grid import Cell, Grid, meant, show
 from nomad_agents.sweeps.options import Value
 from nomad_agents.sweeps.store import Store

@@ -10,12 +10,12 @@ from typing import Any
 import nomad_mj
 from nomad_agents.deep.extra import DEEP_PACKAGES
 from nomad_agents.evaluation import draw_starts, evaluate, read_starts, summarise
-from nomad_agents.experiments.digest import digest
-from nomad_agents.experiments.measures import UNSEEN_SEED
-from nomad_agents.experiments.runs import PACKAGES, Row, Stopwatch, describe_machine
 from nomad_agents.learners import LEARNERS, Lesson
 from nomad_agents.paths import expanded
 from nomad_agents.registry import AGENTS, make_agent
+from nomad_agents.studies.digest import digest
+from nomad_agents.studies.measures import UNSEEN_SEED
+from nomad_agents.studies.runs import PACKAGES, Row, Stopwatch, describe_machine
 from nomad_agents.sweeps.grid import Cell, Grid, SweepRun, describe
 from nomad_agents.sweeps.options import AGENT, STARTS, USUAL_AGENT, Value
 from nomad_agents.sweeps.settings import Settings, settle

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from nomad_agents.benchmark.checks import MASTERED
 from nomad_agents.benchmark.efficiency import Efficiency
 from nomad_agents.benchmark.figures.looks import Look, look, spoken
-from nomad_agents.experiments.figures.style import FAINT, INK, grid, legend_below, sheet
+from nomad_agents.studies.style import FAINT, INK, grid, legend_below, sheet
 
 _WIDTH, _HEIGHT = 8.6, 5.4  # [in]
 _FIRST = 10  # decisions: what was there before learning is drawn here

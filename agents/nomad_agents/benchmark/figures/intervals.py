@@ -7,8 +7,8 @@ import numpy as np
 
 from nomad_agents.benchmark.figures.looks import look, spoken
 from nomad_agents.benchmark.figures.panels import draw_panels, panel_shape
-from nomad_agents.experiments.figures.style import grid, sheet
-from nomad_agents.experiments.statistics import Spread
+from nomad_agents.studies.statistics import Spread
+from nomad_agents.studies.style import grid, sheet
 
 
 def draw_intervals(groups: Mapping[str, Mapping[str, Spread]], path: Path, score: str) -> None:

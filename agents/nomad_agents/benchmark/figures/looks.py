@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from matplotlib.lines import Line2D
 
-from nomad_agents.experiments.figures.style import BLUE, FAINT, GOAL, INK, ORANGE, RED, VIOLET
+from nomad_agents.studies.style import BLUE, FAINT, GOAL, INK, ORANGE, RED, VIOLET
 
 _SKY, _PINK = "#4aa8dc", "#c2649f"
 _FAMILIES = {

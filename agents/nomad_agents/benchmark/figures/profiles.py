@@ -6,7 +6,7 @@ from pathlib import Path
 from nomad_agents.benchmark.figures.looks import look, signs
 from nomad_agents.benchmark.figures.panels import draw_panels, panel_shape
 from nomad_agents.benchmark.profiles import Profile
-from nomad_agents.experiments.figures.style import grid, legend_below, sheet
+from nomad_agents.studies.style import grid, legend_below, sheet
 
 _PANEL, _LEGEND = (3.3, 2.7), 0.9  # [in]
 

@@ -8,12 +8,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from nomad_agents.checkpoint import write_atomically
-from nomad_agents.experiments.report.embed import picture
-from nomad_agents.experiments.report.page import telling
-from nomad_agents.experiments.report.provenance import all_of
-from nomad_agents.experiments.report.templates import find_template
-from nomad_agents.experiments.runs import PACKAGES, Result
-from nomad_agents.experiments.tables import TextTable
+from nomad_agents.studies.pages.embed import picture
+from nomad_agents.studies.pages.templates import find_template
+from nomad_agents.studies.provenance import all_of
+from nomad_agents.studies.runs import PACKAGES, Result
+from nomad_agents.studies.tables import TextTable, without_empty_columns
 
 _HOUR = 3600.0  # [s]
 
@@ -77,7 +76,7 @@ def _telling(part: Part) -> dict[str, object]:
         "anchor": "set-" + re.sub(r"[^a-z0-9]+", "-", part.name.lower()).strip("-"),
         "name": part.name,
         "about": part.about,
-        "tables": [(table.title, *telling(table)) for table in part.tables],
+        "tables": [(table.title, *without_empty_columns(table)) for table in part.tables],
         "figures": [
             {
                 "picture": picture(each.path.with_name(f"{each.path.name}.png")),

@@ -10,8 +10,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 
 from nomad_agents.experiments.figures.room import Panel, goal_sign, rooms
-from nomad_agents.experiments.figures.style import BLUE, INK, ORANGE, RED
 from nomad_agents.experiments.pictures import Action
+from nomad_agents.studies.style import BLUE, INK, ORANGE, RED
 
 _DRAWN = 0.4  # of a move's length, so that neighbours stay apart
 

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 
-from nomad_agents.experiments.figures.style import (
+from nomad_agents.studies.statistics import Spread
+from nomad_agents.studies.style import (
     BLUE,
     INK,
     ORANGE,
@@ -16,7 +17,6 @@ from nomad_agents.experiments.figures.style import (
     legend_below,
     sheet,
 )
-from nomad_agents.experiments.statistics import Spread
 
 _STYLES = ((INK, "o"), (ORANGE, "^"), (BLUE, "s"))
 _ASIDE = 0.16  # between the marks of two agents, of the distance between cases

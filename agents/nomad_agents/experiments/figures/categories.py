@@ -12,8 +12,8 @@ from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.patches import Rectangle, Wedge
 
 from nomad_agents.experiments.figures.room import Panel, draw_goal, draw_plan, room_height
-from nomad_agents.experiments.figures.style import INK, WIDTH, sheet
 from nomad_agents.experiments.pictures import Action
+from nomad_agents.studies.style import INK, WIDTH, sheet
 from nomad_mj.types import FloatArray, IntArray
 
 # Pale straight to the goal, blue to the left of it, red to the right, dark away from it: cyclic,

@@ -16,8 +16,8 @@ from nomad_agents.experiments.figures.room import (
     robot_sign,
     room_height,
 )
-from nomad_agents.experiments.figures.style import BLUE, GOAL, INK, ORANGE, legend_below, sheet
 from nomad_agents.experiments.pictures import Film
+from nomad_agents.studies.style import BLUE, GOAL, INK, ORANGE, legend_below, sheet
 from nomad_mj.scene import Scene
 from nomad_mj.types import FloatArray
 

@@ -7,7 +7,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from nomad_agents.experiments.figures.style import (
+from nomad_agents.studies.runs import Row
+from nomad_agents.studies.style import (
     BLUE,
     INK,
     ORANGE,
@@ -18,7 +19,6 @@ from nomad_agents.experiments.figures.style import (
     legend_below,
     sheet,
 )
-from nomad_agents.experiments.runs import Row
 from nomad_mj.types import FloatArray
 
 Curve = Sequence[Row]

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from nomad_agents.experiments.figures.room import Panel, draw_robot, goal_sign, robot_sign, rooms
-from nomad_agents.experiments.figures.style import RED
 from nomad_agents.experiments.pictures import Way
+from nomad_agents.studies.style import RED
 from nomad_mj.scene import Scene
 
 # They only tell neighbours apart.

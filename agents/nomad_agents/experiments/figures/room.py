@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon, Rectangle
 from matplotlib.ticker import MaxNLocator
 
-from nomad_agents.experiments.figures.style import GOAL, INK, OBSTACLE, legend_below, sheet
+from nomad_agents.studies.style import GOAL, INK, OBSTACLE, legend_below, sheet
 from nomad_mj.scene import Scene
 from nomad_mj.types import FloatArray
 

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import EngFormatter, StrMethodFormatter
 
-from nomad_agents.experiments.figures.style import BLUE, INK, WIDTH, grid, sheet
+from nomad_agents.studies.style import BLUE, INK, WIDTH, grid, sheet
 from nomad_mj.types import FloatArray
 
 PAPER_EXEMPLARS, PAPER_REACTION, PAPER_PLANNING = 93, 0.04, 1.6  # section 4; [s]

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from nomad_agents.experiments.figures.style import BLUE, FAINT, INK, grid, sheet
-from nomad_agents.experiments.statistics import spread
+from nomad_agents.studies.statistics import spread
+from nomad_agents.studies.style import BLUE, FAINT, INK, grid, sheet
 from nomad_mj.types import FloatArray
 
 

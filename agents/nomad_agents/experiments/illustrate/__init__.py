@@ -7,7 +7,7 @@ from pathlib import Path
 from nomad_agents.experiments.experiment import Experiment
 from nomad_agents.experiments.illustrate import numbers, rooms
 from nomad_agents.experiments.illustrate.material import Illustration, Material
-from nomad_agents.experiments.runs import Result
+from nomad_agents.studies.runs import Result
 
 __all__ = ["Illustration", "illustrate"]
 

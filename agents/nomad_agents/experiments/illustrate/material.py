@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from nomad_agents.experiments.experiment import LEARNER, Experiment
 from nomad_agents.experiments.figures.room import Panel
-from nomad_agents.experiments.runs import Result
+from nomad_agents.studies.runs import Result
 from nomad_mj.scene import build_scene
 
 

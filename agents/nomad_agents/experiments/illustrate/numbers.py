@@ -8,7 +8,7 @@ from nomad_agents.experiments.figures.learning_curve import draw_learning
 from nomad_agents.experiments.figures.timing import draw_timing
 from nomad_agents.experiments.figures.variants import Measure, draw_variants
 from nomad_agents.experiments.illustrate.material import Illustration, Material
-from nomad_agents.experiments.statistics import spread
+from nomad_agents.studies.statistics import spread
 from nomad_mj.types import FloatArray
 
 _AGENTS = {LEARNER: "ours", STRAIGHT: "straight to the goal", PLANNER: "planner at every decision"}

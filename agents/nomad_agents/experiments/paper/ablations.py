@@ -19,11 +19,11 @@ from nomad_agents.experiments.experiment import (
     column,
 )
 from nomad_agents.experiments.learnt import learn, trained_agent
-from nomad_agents.experiments.measures import assess, episode_rows
 from nomad_agents.experiments.pictures import spread_starts
-from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.reactive_planner import ReactivePlanner, ReactivePlannerConfig
 from nomad_agents.registry import find_config
+from nomad_agents.studies.measures import assess, episode_rows
+from nomad_agents.studies.runs import Result, Run
 from nomad_agents.training import TrainingConfig
 from nomad_mj.motion import MotionConfig
 

@@ -17,11 +17,10 @@ from nomad_agents.experiments.experiment import (
     Verdict,
     column,
 )
-from nomad_agents.experiments.lattice import lattice
+from nomad_agents.experiments.lattice import judge_actions, lattice
 from nomad_agents.experiments.learnt import acting_agent, trained_agent
-from nomad_agents.experiments.measures import judge_actions
 from nomad_agents.experiments.pictures import LATTICE, action_map, spread_starts
-from nomad_agents.experiments.runs import Result, Run
+from nomad_agents.studies.runs import Result, Run
 
 _SHOWN = 4
 

@@ -21,10 +21,10 @@ from nomad_agents.experiments.experiment import (
     column,
 )
 from nomad_agents.experiments.learnt import acting_agent, kept_agent, new_learner
-from nomad_agents.experiments.measures import DECISIONS, episode_rows
 from nomad_agents.experiments.pictures import Way, way
-from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.registry import find_config
+from nomad_agents.studies.measures import DECISIONS, episode_rows
+from nomad_agents.studies.runs import Result, Run
 from nomad_agents.training import TrainingConfig, test_stream
 from nomad_mj.arenas import Geodesic
 from nomad_mj.envs import PathFinding

@@ -19,9 +19,9 @@ from nomad_agents.experiments.experiment import (
     column,
 )
 from nomad_agents.experiments.learnt import acting_agent, trained_agent
-from nomad_agents.experiments.measures import DECISIONS, assess, episode_rows
 from nomad_agents.experiments.pictures import spread_starts, way
-from nomad_agents.experiments.runs import Result, Run
+from nomad_agents.studies.measures import DECISIONS, assess, episode_rows
+from nomad_agents.studies.runs import Result, Run
 
 UNSEEN = 200
 _SHOWN = 12

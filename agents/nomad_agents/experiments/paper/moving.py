@@ -23,9 +23,9 @@ from nomad_agents.experiments.experiment import (
 )
 from nomad_agents.experiments.filming import Camera
 from nomad_agents.experiments.learnt import acting_agent, trained_agent
-from nomad_agents.experiments.measures import UNSEEN_SEED, episode_rows, unseen_starts
 from nomad_agents.experiments.pictures import Film
-from nomad_agents.experiments.runs import Result, Row, Run
+from nomad_agents.studies.measures import UNSEEN_SEED, episode_rows, unseen_starts
+from nomad_agents.studies.runs import Result, Row, Run
 from nomad_agents.training import stream
 from nomad_mj.envs import PathFinding
 from nomad_mj.movers import MovingGoal, MovingObstacles

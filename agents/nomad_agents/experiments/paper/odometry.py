@@ -17,16 +17,16 @@ from nomad_agents.experiments.experiment import (
     Verdict,
     column,
 )
-from nomad_agents.experiments.lattice import lattice
+from nomad_agents.experiments.lattice import judge_actions, lattice
 from nomad_agents.experiments.learnt import acting_agent, trained_agent
-from nomad_agents.experiments.measures import assess, episode_rows, judge_actions
 from nomad_agents.experiments.pictures import (
     LATTICE,
     action_map,
     share_alike,
     spread_starts,
 )
-from nomad_agents.experiments.runs import Result, Run
+from nomad_agents.studies.measures import assess, episode_rows
+from nomad_agents.studies.runs import Result, Run
 from nomad_mj.envs import PathFinding
 from nomad_mj.tasks import OdometryNoise
 

@@ -20,15 +20,15 @@ from nomad_agents.experiments.experiment import (
     Verdict,
     column,
 )
-from nomad_agents.experiments.lattice import lattice
+from nomad_agents.experiments.lattice import judge_actions, lattice
 from nomad_agents.experiments.learnt import (
     acting_agent,
     trained_agent,
 )
-from nomad_agents.experiments.measures import assess, episode_rows, judge_actions
 from nomad_agents.experiments.pictures import LATTICE, action_map, spread_starts, way
-from nomad_agents.experiments.runs import Result, Row, Run
 from nomad_agents.reactive_planner import ReactivePlanner
+from nomad_agents.studies.measures import assess, episode_rows
+from nomad_agents.studies.runs import Result, Row, Run
 from nomad_mj.envs import PathFinding
 from nomad_mj.errors import NomadError
 from nomad_mj.scene import build_scene

@@ -18,10 +18,10 @@ from nomad_agents.experiments.experiment import (
     column,
 )
 from nomad_agents.experiments.learnt import acting_agent, kept_agent, new_learner
-from nomad_agents.experiments.measures import assess, episode_rows
 from nomad_agents.experiments.pictures import spread_starts, way
-from nomad_agents.experiments.runs import Result, Run
 from nomad_agents.registry import find_config
+from nomad_agents.studies.measures import assess, episode_rows
+from nomad_agents.studies.runs import Result, Run
 from nomad_agents.training import TrainingConfig
 
 ROBOTS = ("nomad200", "pioneer", "khepera", "omnibot", "racer")

@@ -16,9 +16,9 @@ from nomad_agents.experiments.experiment import (
 )
 from nomad_agents.experiments.learnt import trained_agent
 from nomad_agents.experiments.pictures import spread_starts
-from nomad_agents.experiments.runs import Result, Run
-from nomad_agents.experiments.speed import decision_times
 from nomad_agents.registry import find_config
+from nomad_agents.speed.ratios import decision_times
+from nomad_agents.studies.runs import Result, Run
 
 EXEMPLARS = (10, 30, 100, 300, 1000, 3000)
 PAPER_REACTION_S, PAPER_PLANNING_S = 0.04, 1.6

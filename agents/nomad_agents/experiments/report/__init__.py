@@ -6,8 +6,7 @@ from nomad_agents.experiments.report.section import (
     Captioned,
     NoVideo,
     Section,
-    Tabular,
     Video,
 )
 
-__all__ = ["Captioned", "NoVideo", "Section", "Tabular", "Video", "provenance", "write_report"]
+__all__ = ["Captioned", "NoVideo", "Section", "Video", "provenance", "write_report"]

@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from nomad_agents.checkpoint import write_atomically
-from nomad_agents.experiments.report.embed import Picture, data_uri, picture
-from nomad_agents.experiments.report.section import NoVideo, Section, Tabular
-from nomad_agents.experiments.report.templates import find_template
+from nomad_agents.experiments.report.section import NoVideo, Section
+from nomad_agents.studies.pages.embed import Picture, data_uri, picture
+from nomad_agents.studies.pages.templates import find_template
+from nomad_agents.studies.tables import without_empty_columns
 
 _VERDICTS = {"holds": "holds", "holds in part": "part", "does not hold": "fails"}
 
@@ -73,7 +74,7 @@ def write_report(
         for anchor, section in zip(_anchors(sections), sections, strict=True)
     ]
     counts = {mark: sum(part.mark == mark for part in parts) for mark in _VERDICTS.values()}
-    text = find_template("page.html.jinja").render(
+    text = find_template("page.html.jinja", "nomad_agents.experiments.report").render(
         parts=parts, facts=facts, seeds=seeds, counts=counts, introduced=introduced
     )
     write_atomically(path, lambda file: file.write(text.encode()))
@@ -97,7 +98,7 @@ def _anchors(sections: Sequence[Section]) -> Iterator[str]:
 
 
 def _part(anchor: str, section: Section, folder: Path) -> _Part:
-    headings, rows = telling(section.table)
+    headings, rows = without_empty_columns(section.table)
     figures = [
         _Figure(
             picture(Path(each.path)),
@@ -121,9 +122,3 @@ def _part(anchor: str, section: Section, folder: Path) -> _Part:
 def _sentence(text: str) -> str:
     """Return words as a sentence: verdicts are written without, to stand in a line of output."""
     return f"{text[:1].upper()}{text[1:]}" + ("" if text.endswith((".", "!", "?")) else ".")
-
-
-def telling(table: Tabular) -> tuple[list[str], list[list[str]]]:
-    """Return headings and rows without the columns in which no row has anything."""
-    kept = [n for n in range(len(table.headings)) if n == 0 or any(row[n] for row in table.rows)]
-    return [table.headings[n] for n in kept], [[row[n] for n in kept] for row in table.rows]

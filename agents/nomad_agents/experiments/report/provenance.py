@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 from nomad_agents.experiments.experiment import LEARNER, Study
-from nomad_agents.experiments.runs import PACKAGES, Result
+from nomad_agents.studies.provenance import all_of
+from nomad_agents.studies.runs import PACKAGES, Result
 
 _HOUR = 3600.0  # [s]
 
@@ -36,8 +37,3 @@ def provenance(study: Study, results: Sequence[Result], wanted: int) -> list[tup
         ("Python", all_of(results, "python")),
         ("Machine", all_of(results, "system")),
     ]
-
-
-def all_of(results: Sequence[Result], key: str) -> str:
-    """Return every value that the machines of the results have under a name."""
-    return "; ".join(sorted({str(r.machine[key]) for r in results if key in r.machine})) or "-"

@@ -6,20 +6,7 @@ from pathlib import Path
 from typing import Protocol
 
 from nomad_agents.experiments.experiment import Verdict
-
-
-class Tabular(Protocol):
-    """A table in words: the headings, and as many cells in each row, the first what it is about."""
-
-    @property
-    def headings(self) -> Sequence[str]:
-        """Of the columns; the first may be empty."""
-        ...
-
-    @property
-    def rows(self) -> Sequence[Sequence[str]]:
-        """From above to below."""
-        ...
+from nomad_agents.studies.tables import TextTable
 
 
 class Captioned(Protocol):
@@ -62,7 +49,7 @@ class Section:
         As of `Experiment`.
     verdict : Verdict
         Whether the claim holds, and why.
-    table : Tabular
+    table : TextTable
         The numbers.
     illustrations : sequence of Captioned
         The figures.
@@ -77,7 +64,7 @@ class Section:
     claim: str
     source: str
     verdict: Verdict
-    table: Tabular
+    table: TextTable
     illustrations: Sequence[Captioned]
     video: Video | NoVideo
     command: str

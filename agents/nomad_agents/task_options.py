@@ -7,7 +7,6 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import nomad_mj
-from nomad_agents.cli.parsing import parse_place
 from nomad_mj import (
     BumperNoise,
     Crosstalk,
@@ -148,3 +147,20 @@ class TaskOptions:
                 raise CheckpointError(
                     f"cannot resume {path!r}: it was trained with {option} {theirs!r}, not {mine!r}"
                 )
+
+
+def parse_place(what: str, text: str) -> tuple[float, float] | None:
+    """Return the place that ``X,Y`` names [m], None for no text.
+
+    Raises
+    ------
+    ConfigError
+        Anything but two finite numbers.
+    """
+    if not text:
+        return None
+    try:
+        x, y = (float(part) for part in text.split(","))
+    except ValueError:
+        raise ConfigError(f"{what} {text!r}: must be X,Y in metres, such as 8,2.5") from None
+    return x, y

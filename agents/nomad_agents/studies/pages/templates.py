@@ -6,18 +6,17 @@ import jinja2
 
 
 @cache
-def find_template(name: str, package: str = "") -> jinja2.Template:
-    """Return a template, which may extend and include those of the report.
+def find_template(name: str, package: str) -> jinja2.Template:
+    """Return a template, which may extend and include those that are here.
 
     Parameters
     ----------
     name : str
         Of its file.
     package : str
-        Where it lies, if not beside the report's.
+        Where it lies.
     """
-    packages = [package] if package else []
-    packages.append("nomad_agents.experiments.report")
+    packages = (package, "nomad_agents.studies.pages")
     environment = jinja2.Environment(
         loader=jinja2.ChoiceLoader([jinja2.PackageLoader(each, ".") for each in packages]),
         autoescape=True,

@@ -7,7 +7,7 @@ import gymnasium
 import numpy as np
 
 import nomad_mj
-from nomad_agents.experiments.speed import BareLoop, timed
+from nomad_agents.speed.ratios import BareLoop, timed
 from nomad_mj.gym import registration
 from nomad_mj.perception import SituationSpec, perceive
 from nomad_mj.scene import CONTROL_TIMESTEP

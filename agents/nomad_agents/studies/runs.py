@@ -18,9 +18,9 @@ from typing import Any
 import cattrs
 
 from nomad_agents.checkpoint import write_atomically
-from nomad_agents.experiments.digest import digests
-from nomad_agents.experiments.pool import do_in_processes
 from nomad_agents.registry import find_config
+from nomad_agents.studies.digest import digests
+from nomad_agents.studies.pool import do_in_processes
 from nomad_mj.assets import find_robot, find_room
 from nomad_mj.errors import OutputError
 

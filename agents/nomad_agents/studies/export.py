@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from nomad_agents.checkpoint import write_atomically
-from nomad_agents.experiments.runs import PACKAGES, Result, Row, Run, version_of
+from nomad_agents.studies.runs import PACKAGES, Result, Row, Run, version_of
 
 _RUN = tuple(field.name for field in fields(Run))
 

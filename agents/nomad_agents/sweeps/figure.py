@@ -11,7 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, NullLocator
 from matplotlib.transforms import ScaledTranslation
 
-from nomad_agents.experiments.figures.style import (
+from nomad_agents.studies.statistics import spread
+from nomad_agents.studies.style import (
     BLUE,
     GOAL,
     INK,
@@ -22,7 +23,6 @@ from nomad_agents.experiments.figures.style import (
     legend_below,
     sheet,
 )
-from nomad_agents.experiments.statistics import spread
 from nomad_mj.types import FloatArray
 
 _SIGNS = ((BLUE, "o"), (ORANGE, "s"), (GOAL, "^"), (VIOLET, "D"), (RED, "v"), (INK, "P"))

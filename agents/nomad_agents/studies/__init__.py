@@ -1,0 +1,1 @@
+"""What every study of many runs is made with: runs, statistics, tables, pages."""
