@@ -92,7 +92,7 @@ class Result:
     run : Run
         Which.
     row : dict
-        The run's numbers by name; the same on every machine.
+        The run's numbers by name; the same on every machine, but for what its processor rounds.
     episodes : list of dict
         The same of each episode.
     curve : list of dict
