@@ -187,7 +187,9 @@ def test_a_run_that_never_got_there_is_endless_in_median_and_quartiles(
 @given(st.lists(st.floats(0, 1e6), min_size=1, max_size=9))
 def test_quartiles_are_numpys_where_all_are_finite(values: list[float]) -> None:
     expected = np.percentile(values, [25, 50, 75])
-    np.testing.assert_allclose(quartiles(np.array(values)), expected, rtol=1e-12)
+    # Between neighbours below the normal numbers either is the middle.
+    tiny = np.finfo(float).tiny
+    np.testing.assert_allclose(quartiles(np.array(values)), expected, rtol=1e-12, atol=tiny)
 
 
 def curve(*points: tuple[int, float], seed: int = 0) -> Result:

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
-from nomad_agents.cli.main import COMMANDS
+from nomad_agents.cli.main import COMMANDS, main
 from nomad_agents.cli.parsing import parse
 from nomad_agents.reactive_planner import FAITHFUL, TUNED
 
@@ -63,6 +63,13 @@ def run_python(text: str, where: str, names: dict[str, Any]) -> str:
 
 
 def run_shell(text: str, where: str, folder: Path) -> str:
+    """Run a snippet; in this process, which is faster, what is nothing but our own commands."""
+    lines = text.replace("\\\n", " ").splitlines()
+    if all(re.fullmatch(r"nomad-mj (?!.*--help)[^|&;<>$]*", line) for line in lines):
+        with contextlib.redirect_stdout(io.StringIO()) as output:
+            for line in lines:
+                assert main(shlex.split(line)[1:]) == 0, f"{where}: {line}"
+        return output.getvalue()
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     ran = subprocess.run(
         ["bash", "-ec", text],
