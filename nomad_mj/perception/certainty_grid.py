@@ -5,7 +5,6 @@ surface are empty; cells on it are occupied, more surely in the middle of the co
 edge; cells behind it count as occupied too. Nothing is integrated over time.
 """
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
@@ -15,11 +14,11 @@ import numpy.typing as npt
 
 from nomad_mj.errors import ConfigError
 from nomad_mj.limits import MOST, TINY, require
+from nomad_mj.perception.side_by_side import AT_ONCE, side_by_side
 from nomad_mj.types import FloatArray, IntArray, RangeRing, SensorLayout
 
 MOST_CELLS = 401
 _BINS = 1440  # quarters of a degree: a turret's heading is rounded to this
-_AT_ONCE = 256  # grids that are filled together: what they take stays in the processor's cache
 
 
 @dataclass(frozen=True)
@@ -63,12 +62,12 @@ class GridSpec:
 class _Layer(NamedTuple):
     """Cones of a ring of which none covers another; P places: cells that they reach, of n robots.
 
-    Of places, arrays hold `_AT_ONCE` robots' worth.
+    Of places, arrays hold `AT_ONCE` robots; of directions two turns, so that none need be wrapped.
     """
 
-    covered: npt.NDArray[np.bool_] | None  # (bins,) whether a cone covers a direction; None: all
-    sensor: IntArray  # (bins,) which
-    certainty: FloatArray  # (bins,) at that direction
+    covered: npt.NDArray[np.bool_] | None  # (2 bins,) whether a cone covers a direction; None: all
+    sensor: IntArray  # (2 bins,) which
+    certainty: FloatArray  # (2 bins,) at that direction
     place: IntArray | None  # (P,) each place, as an index of grids (n, cells**2); None: all
     robot: IntArray  # (P,) its robot's first reading, as an index of readings (n, count)
     distance: FloatArray  # (P,) from its robot's centre [m]
@@ -81,6 +80,7 @@ class _Tables(NamedTuple):
     limit: FloatArray  # (count,) readings from here on are a miss
     angle: FloatArray  # (cells**2,) bearing of each cell's centre, in bins
     inside: IntArray  # cells where the robot itself stands
+    whole: bool  # whether the first layer reaches all cells
 
 
 def cell_centres(spec: GridSpec) -> FloatArray:
@@ -96,12 +96,16 @@ def _tables(layout: SensorLayout, spec: GridSpec) -> _Tables:
     sizes = [len(ring.bearings) for ring in layout.rings]
     max_range = np.repeat([ring.max_range for ring in layout.rings], sizes)
     firsts = np.cumsum([0, *sizes])
+    layers = [
+        layer
+        for ring, first in zip(layout.rings, firsts.tolist(), strict=False)
+        for layer in _layers(ring, first, distance, layout, spec)
+    ]
+    whole = [layer.covered is None and layer.place is None for layer in layers]
+    first = whole.index(True) if any(whole) else 0
     return _Tables(
-        layers=tuple(
-            layer
-            for ring, first in zip(layout.rings, firsts.tolist(), strict=False)
-            for layer in _layers(ring, first, distance, layout, spec)
-        ),
+        layers=(layers[first], *layers[:first], *layers[first + 1 :]),
+        whole=any(whole),
         limit=np.minimum(max_range, spec.perception_range),
         angle=np.arctan2(centres[:, 1], centres[:, 0]) * (_BINS / (2 * np.pi)),
         inside=np.flatnonzero(distance <= layout.radius),
@@ -119,22 +123,23 @@ def _layers(
     relative = off_axis / ring.half_angle
     certainty = 1 - (1 - spec.edge_certainty) * np.minimum(relative, 1.0) ** 2
     reached = np.flatnonzero(distance <= ring.max_range + layout.radius)
-    robots = np.arange(_AT_ONCE)[:, None]
+    robots = np.arange(AT_ONCE)[:, None]
     layers: list[_Layer] = []
     for sensor in order.T:
         covered = np.take_along_axis(covers, sensor[:, None], axis=1)[:, 0]
         if not covered.any():
             break
+        certain = np.take_along_axis(certainty, sensor[:, None], axis=1)[:, 0]
         layers.append(
             _Layer(
-                covered=None if covered.all() else covered,
-                sensor=sensor + first,
-                certainty=np.take_along_axis(certainty, sensor[:, None], axis=1)[:, 0],
+                covered=None if covered.all() else np.tile(covered, 2),
+                sensor=np.tile(sensor + first, 2),
+                certainty=np.tile(certain, 2),
                 place=None
                 if len(reached) == len(distance)
                 else (robots * len(distance) + reached).ravel(),
                 robot=np.repeat(robots * layout.count, len(reached)),
-                distance=np.tile(distance[reached], _AT_ONCE),
+                distance=np.tile(distance[reached], AT_ONCE),
             )
         )
     return layers
@@ -170,19 +175,12 @@ def certainty_grid(
     readings = np.reshape(ranges, (-1, layout.count))
     headings = np.broadcast_to(np.asarray(heading, dtype=np.float64), lead).reshape(-1)
     surfaces = np.where(readings < tables.limit, readings + layout.radius, np.inf)
-    grids = np.full((len(readings), spec.cells**2), np.inf)
+    grids = np.empty((len(readings), spec.cells**2))
 
-    def fill(first: int) -> None:
-        part = slice(first, first + _AT_ONCE)
+    def fill(part: slice) -> None:
         _fill(grids[part], surfaces[part], headings[part], tables, spec)
 
-    firsts = range(0, len(readings), _AT_ONCE)
-    if threads > 1 and len(firsts) > 1:
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(fill, firsts))  # NumPy lets threads run side by side
-    else:
-        for first in firsts:
-            fill(first)
+    side_by_side(fill, len(readings), threads)
     return grids.reshape(*lead, spec.cells, spec.cells)
 
 
@@ -191,27 +189,40 @@ def _fill(
 ) -> None:
     """Fill grids (n, cells**2), given how far each sensor's surface is (n, count) [m]."""
     turn = headings[:, None] * (_BINS / (2 * np.pi))
-    bins = np.rint(tables.angle - turn).astype(np.intp).reshape(-1)  # they wrap around
+    angle = tables.angle - turn
+    np.rint(angle, out=angle)
+    angle += _BINS * np.ceil(turn / _BINS + 0.5)  # to the first two turns, exactly
+    bins = angle.astype(np.intp).reshape(-1)
     flat = grids.reshape(-1)
-    for layer in tables.layers:
-        count = len(layer.robot) // _AT_ONCE * len(grids)
+    if not tables.whole:
+        flat.fill(np.inf)
+    for number, layer in enumerate(tables.layers):
+        count = len(layer.robot) // AT_ONCE * len(grids)
         robot, distance = layer.robot[:count], layer.distance[:count]
         place = None if layer.place is None else layer.place[:count]
         near = bins if place is None else bins.take(place)
         if layer.covered is not None:
-            chosen = np.flatnonzero(layer.covered.take(near, mode="wrap"))
+            chosen = np.flatnonzero(layer.covered.take(near, mode="clip"))
             place = chosen if place is None else place.take(chosen)
             robot, distance, near = robot.take(chosen), distance.take(chosen), near.take(chosen)
         # A ramp over half a cell, so that the grid changes smoothly with the readings.
-        ramp = distance - surfaces.take(layer.sensor.take(near, mode="wrap") + robot)
+        reading = layer.sensor.take(near, mode="clip")
+        reading += robot
+        ramp = surfaces.take(reading)
+        np.subtract(distance, ramp, out=ramp)
         ramp *= 2 / spec.resolution
         ramp += 1
         np.minimum(np.maximum(ramp, 0, out=ramp), 1, out=ramp)
-        ramp *= layer.certainty.take(near, mode="wrap")
+        certainty = layer.certainty.take(near, mode="clip")
+        if tables.whole and number == 0:
+            np.multiply(ramp, certainty, out=flat)
+            continue
+        ramp *= certainty
         # A cone tells of the nearest thing in it, so wherever one is empty nothing can be.
         if place is None:
             np.minimum(ramp, flat, out=flat)
         else:
             flat[place] = np.minimum(ramp, flat.take(place), out=ramp)
-    np.copyto(grids, spec.unseen, where=np.isinf(grids))
+    if not tables.whole:
+        np.copyto(grids, spec.unseen, where=np.isinf(grids))
     grids[:, tables.inside] = 0.0

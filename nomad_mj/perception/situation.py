@@ -11,10 +11,10 @@ from nomad_mj.limits import MOST, TINY, require
 from nomad_mj.perception.certainty_grid import GridSpec, certainty_grid
 from nomad_mj.perception.coarse_coding import (
     FEWEST_CELLS,
-    GRID_FIELDS,
     UNIT_CENTRES,
     code_grid,
     code_signal,
+    coded_cells,
 )
 from nomad_mj.types import FloatArray, SensorLayout
 
@@ -51,10 +51,7 @@ class SituationSpec:
     @property
     def size(self) -> int:
         """Number of components of a situation."""
-        cells = self.grid.cells
-        for side, stride in GRID_FIELDS:
-            cells = (cells - side) // stride + 1
-        return 2 * len(UNIT_CENTRES) + cells**2
+        return 2 * len(UNIT_CENTRES) + coded_cells(self.grid.cells) ** 2
 
 
 class Percept(NamedTuple):
@@ -117,6 +114,6 @@ def perceive(
         For hundreds of robots, as of `certainty_grid`.
     """
     grid = certainty_grid(ranges, heading, layout, spec.grid, threads)
-    coarse = code_grid(grid).reshape(*grid.shape[:-2], -1)
+    coarse = code_grid(grid, threads).reshape(*grid.shape[:-2], -1)
     situation = np.concatenate([attraction_force(goal, spec), coarse], axis=-1)
     return Percept(situation, grid, goal, ranges, heading)

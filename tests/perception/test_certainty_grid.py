@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from nomad_mj.perception import GridSpec, cell_centres, certainty_grid
+from nomad_mj.perception import GridSpec, cell_centres, certainty_grid, code_grid
 from nomad_mj.types import FloatArray, RangeRing, SensorLayout
 
 SPEC = GridSpec()
@@ -28,7 +28,8 @@ EIGHT = SensorLayout(
     0.05, (RangeRing("ir", tuple((np.arange(8) * math.tau / 8).tolist()), 0.3927, 0.0, 0.8),)
 )
 UNEVEN = SensorLayout(0.3, (RangeRing("sonar", (-1.5, -0.3, 0.0, 0.31, 1.5), 0.2, 0.1, 3.0),))
-LAYOUTS = (NOMAD, LIDAR, EIGHT, UNEVEN)
+NARROW_FIRST = SensorLayout(0.265, NOMAD.rings[::-1])  # the ring that sees all cells comes last
+LAYOUTS = (NOMAD, LIDAR, EIGHT, UNEVEN, NARROW_FIRST)
 
 headings = st.floats(-10, 10)
 rings = st.builds(
@@ -143,6 +144,22 @@ def test_hundreds_on_threads_are_handled_as_each_by_itself(threads: int) -> None
     for i in (0, 1, 255, 256, 511, 512, 699):
         one = certainty_grid(ranges[i], float(turns[i]), NOMAD, SPEC)
         np.testing.assert_array_equal(grids[i], one)
+        np.testing.assert_array_equal(code_grid(grids, threads)[i], code_grid(one))
+
+
+@given(readings(NOMAD), headings)
+def test_the_order_of_rings_does_not_matter(ranges: FloatArray, heading: float) -> None:
+    grid = certainty_grid(ranges[0], heading, NOMAD, SPEC)
+    turned = np.concatenate([ranges[0, 16:], ranges[0, :16]])
+    np.testing.assert_array_equal(certainty_grid(turned, heading, NARROW_FIRST, SPEC), grid)
+
+
+@given(readings(NOMAD), st.integers(-3000, 3000), st.sampled_from((-1000, -3, -1, 1, 3, 1000)))
+def test_whole_turns_do_not_matter(ranges: FloatArray, milliradians: int, turns: int) -> None:
+    heading = milliradians / 1000  # no cell is then at the edge of a quarter of a degree
+    grid = certainty_grid(ranges[0], heading, NOMAD, SPEC)
+    again = certainty_grid(ranges[0], heading + turns * math.tau, NOMAD, SPEC)
+    np.testing.assert_array_equal(again, grid)
 
 
 @given(st.data(), layouts, headings)

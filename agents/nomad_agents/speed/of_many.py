@@ -70,7 +70,7 @@ def async_ratio(room: str, blocks: int = 20, steps: int = 40) -> float:
     return float(np.median(ratios))
 
 
-def perception_ratio(room: str, blocks: int = 5, singles: int = 256) -> float:
+def perception_ratio(room: str, blocks: int = 11, singles: int = 256) -> float:
     """Return the time of single perceptions over that of as many at once, 4096, median.
 
     Those at once are on 2 threads.
