@@ -72,6 +72,11 @@ class _Layer(NamedTuple):
     robot: IntArray  # (P,) its robot's first reading, as an index of readings (n, count)
     distance: FloatArray  # (P,) from its robot's centre [m]
 
+    @property
+    def whole(self) -> bool:
+        """Whether it tells of every cell."""
+        return self.covered is None and self.place is None
+
 
 class _Tables(NamedTuple):
     """What depends on the layout alone."""
@@ -80,7 +85,6 @@ class _Tables(NamedTuple):
     limit: FloatArray  # (count,) readings from here on are a miss
     angle: FloatArray  # (cells**2,) bearing of each cell's centre, in bins
     inside: IntArray  # cells where the robot itself stands
-    whole: bool  # whether the first layer reaches all cells
 
 
 def cell_centres(spec: GridSpec) -> FloatArray:
@@ -101,11 +105,8 @@ def _tables(layout: SensorLayout, spec: GridSpec) -> _Tables:
         for ring, first in zip(layout.rings, firsts.tolist(), strict=False)
         for layer in _layers(ring, first, distance, layout, spec)
     ]
-    whole = [layer.covered is None and layer.place is None for layer in layers]
-    first = whole.index(True) if any(whole) else 0
     return _Tables(
-        layers=(layers[first], *layers[:first], *layers[first + 1 :]),
-        whole=any(whole),
+        layers=tuple(layers),
         limit=np.minimum(max_range, spec.perception_range),
         angle=np.arctan2(centres[:, 1], centres[:, 0]) * (_BINS / (2 * np.pi)),
         inside=np.flatnonzero(distance <= layout.radius),
@@ -188,41 +189,50 @@ def _fill(
     grids: FloatArray, surfaces: FloatArray, headings: FloatArray, tables: _Tables, spec: GridSpec
 ) -> None:
     """Fill grids (n, cells**2), given how far each sensor's surface is (n, count) [m]."""
-    turn = headings[:, None] * (_BINS / (2 * np.pi))
-    angle = tables.angle - turn
-    np.rint(angle, out=angle)
-    angle += _BINS * np.ceil(turn / _BINS + 0.5)  # to the first two turns, exactly
-    bins = angle.astype(np.intp).reshape(-1)
+    bins = _bins(tables.angle, headings)
     flat = grids.reshape(-1)
-    if not tables.whole:
-        flat.fill(np.inf)
-    for number, layer in enumerate(tables.layers):
-        count = len(layer.robot) // AT_ONCE * len(grids)
-        robot, distance = layer.robot[:count], layer.distance[:count]
-        place = None if layer.place is None else layer.place[:count]
-        near = bins if place is None else bins.take(place)
-        if layer.covered is not None:
-            chosen = np.flatnonzero(layer.covered.take(near, mode="clip"))
-            place = chosen if place is None else place.take(chosen)
-            robot, distance, near = robot.take(chosen), distance.take(chosen), near.take(chosen)
-        # A ramp over half a cell, so that the grid changes smoothly with the readings.
-        reading = layer.sensor.take(near, mode="clip")
-        reading += robot
-        ramp = surfaces.take(reading)
-        np.subtract(distance, ramp, out=ramp)
-        ramp *= 2 / spec.resolution
-        ramp += 1
-        np.minimum(np.maximum(ramp, 0, out=ramp), 1, out=ramp)
-        certainty = layer.certainty.take(near, mode="clip")
-        if tables.whole and number == 0:
-            np.multiply(ramp, certainty, out=flat)
-            continue
-        ramp *= certainty
+    whole = any(layer.whole for layer in tables.layers)
+    flat.fill(np.inf)
+    for layer in tables.layers:
+        place, told = _tell(layer, bins, surfaces, spec)
         # A cone tells of the nearest thing in it, so wherever one is empty nothing can be.
         if place is None:
-            np.minimum(ramp, flat, out=flat)
+            np.minimum(told, flat, out=flat)
         else:
-            flat[place] = np.minimum(ramp, flat.take(place), out=ramp)
-    if not tables.whole:
+            flat[place] = np.minimum(told, flat.take(place), out=told)
+    if not whole:
         np.copyto(grids, spec.unseen, where=np.isinf(grids))
     grids[:, tables.inside] = 0.0
+
+
+def _bins(angle: FloatArray, headings: FloatArray) -> IntArray:
+    """Return the direction of each cell from each robot's sensors, in the first two turns."""
+    turn = headings[:, None] * (_BINS / (2 * np.pi))
+    direction = angle - turn
+    np.rint(direction, out=direction)
+    direction += _BINS * np.ceil(turn / _BINS + 0.5)  # whole numbers: nothing is rounded
+    return direction.astype(np.intp).reshape(-1)
+
+
+def _tell(
+    layer: _Layer, bins: IntArray, surfaces: FloatArray, spec: GridSpec
+) -> tuple[IntArray | None, FloatArray]:
+    """Return places that a layer tells of, as an index of grids, None for all, and what."""
+    count = len(layer.robot) // AT_ONCE * len(surfaces)
+    robot, distance = layer.robot[:count], layer.distance[:count]
+    place = None if layer.place is None else layer.place[:count]
+    near = bins if place is None else bins.take(place)
+    if layer.covered is not None:
+        chosen = np.flatnonzero(layer.covered.take(near, mode="clip"))
+        place = chosen if place is None else place.take(chosen)
+        robot, distance, near = robot.take(chosen), distance.take(chosen), near.take(chosen)
+    reading = layer.sensor.take(near, mode="clip")
+    reading += robot
+    told = surfaces.take(reading)
+    # A ramp over half a cell, so that the grid changes smoothly with the readings.
+    np.subtract(distance, told, out=told)
+    told *= 2 / spec.resolution
+    told += 1
+    np.minimum(np.maximum(told, 0, out=told), 1, out=told)
+    told *= layer.certainty.take(near, mode="clip")
+    return place, told
