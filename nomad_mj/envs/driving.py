@@ -57,25 +57,26 @@ class Lookout:
     layout : SensorLayout
         The robot's range sensors.
     config : MotionConfig
-        What counts as ahead. Its security distance is raised to what the sensors can tell.
+        What counts as ahead. Its security distance is raised to what the sensors can tell,
+        wherever they look.
     """
 
     def __init__(self, layout: SensorLayout, config: MotionConfig) -> None:
-        nearest = min(ring.min_range for ring in layout.rings)
         # They read no less than their minimum.
-        self.motion = replace(
-            config, security_distance=max(config.security_distance, 1.1 * nearest)
-        )
+        distances = np.maximum(config.security_distance, 1.1 * _least_readings(layout))
+        self.motion = replace(config, security_distance=float(distances.min()))
         bearings = np.concatenate([ring.bearings for ring in layout.rings])
-        self._edges, self._table = _slacks(
+        self._edges, table = _slacks(
             bearings, config.ahead, max(config.ahead, math.pi / 2), self.motion.beside
         )
+        self._table = table - (distances - distances.min())
         self._bounds: list[float] = self._edges.tolist()  # for one robot alone
 
     def slack(self, heading: float, sensors: float) -> FloatArray:
         """Return how much nearer things may be before each sensor, (C,) [m]; infinite: behind.
 
         Beside the robot, beyond `ahead`, that is `beside`: corners pass there between two sensors.
+        It is negative for sensors that cannot tell what is as near as others can elsewhere.
 
         Parameters
         ----------
@@ -90,6 +91,16 @@ class Lookout:
         """Return the same for many robots, (n, C) [m], given (n,) and (n,)."""
         turned = np.mod(sensors - heading, _TURN)
         return self._table[np.searchsorted(self._edges, turned, side="right")]
+
+
+def _least_readings(layout: SensorLayout) -> FloatArray:
+    """Return the least that any sensor reads whose cone overlaps that of each, (C,) [m]."""
+    sizes = [len(ring.bearings) for ring in layout.rings]
+    bearings = np.concatenate([ring.bearings for ring in layout.rings])
+    half = np.repeat([ring.half_angle for ring in layout.rings], sizes)
+    least = np.repeat([ring.min_range for ring in layout.rings], sizes)
+    apart = np.abs((bearings[:, None] - bearings + math.pi) % _TURN - math.pi)
+    return np.where(apart <= half[:, None] + half, least, np.inf).min(axis=1)
 
 
 def _slacks(

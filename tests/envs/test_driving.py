@@ -14,7 +14,7 @@ from nomad_mj import Outcome, PathFinding, load
 from nomad_mj.envs.driving import Driving, Lookout
 from nomad_mj.errors import ConfigError, NomadError, UnknownNameError
 from nomad_mj.motion import MotionConfig
-from nomad_mj.types import FloatArray, Travel
+from nomad_mj.types import FloatArray, RangeRing, SensorLayout, Travel
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +42,23 @@ def test_slack_is_none_ahead_a_little_beside_and_endless_behind(
         assert own == (0.0 if off < limits[0] else config.beside if off < limits[1] else math.inf)
     many = lookout.slacks(np.array([heading, 0.0]), np.array([sensors, -1e-17]))
     np.testing.assert_array_equal(many, [slack, lookout.slack(0.0, -1e-17)])
+
+
+def test_each_side_is_as_far_off_as_its_own_sensors_can_tell() -> None:
+    def arc(*degrees: int) -> tuple[float, ...]:
+        return tuple(math.radians(bearing) for bearing in degrees)
+
+    far = RangeRing("lidar", arc(-60, -30, 0, 30, 60), math.radians(16), 0.3, 8.0)
+    near = RangeRing("infrared", arc(90, 150, 210, 270), math.radians(20), 0.0, 0.8)
+    config = MotionConfig(ahead=math.radians(45))
+    lookout = Lookout(SensorLayout(0.2, (far, near)), config)
+    assert lookout.motion.security_distance == config.security_distance
+    more = 1.1 * 0.3 - config.security_distance  # that the lidar cannot tell
+    ahead = lookout.slack(0.0, 0.0)
+    assert ahead[1:4] == pytest.approx(-more)  # nothing else looks there
+    assert ahead[[0, 4, 5, 8]] == pytest.approx(config.beside)  # infrared looks there, too
+    assert np.isinf(ahead[6:8]).all()
+    assert (lookout.slack(math.pi, 0.0)[6:8] == 0.0).all()
 
 
 @pytest.mark.parametrize("sensors", [0.0, -0.0, math.pi / 2, -1e-17, 2 * math.pi])
