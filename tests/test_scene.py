@@ -137,6 +137,8 @@ def test_a_start_or_goal_in_an_obstacle_is_refused_by_name(own_room: OwnRoom) ->
 def test_a_goal_that_cannot_be_reached_is_refused(own_room: OwnRoom) -> None:
     barrier = '<geom name="obstacle_0" type="box" size="5 0.1 0.5" pos="0 0 0.5"/>'
     wrong("room 'own'", own_room(barrier), "nomad200", "cannot reach the goal", "start_0", "0.53 m")
+    outside = own_room("", ('pos="3 3 0"', 'pos="30 3 0"'))
+    wrong("room 'own'", outside, "nomad200", "cannot reach the goal", "floor is -5.2 to 5.2 m in x")
 
 
 def test_a_room_is_no_robot_and_a_robot_no_room(own_room: OwnRoom) -> None:

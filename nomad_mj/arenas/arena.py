@@ -111,8 +111,16 @@ def check_arena(plan: FloorPlan, arena: Arena, radius: float) -> None:
             raise StartError(
                 f"room {arena.name!r}: a robot of radius {radius:g} m cannot reach the goal "
                 f"({arena.goal[0]:.2f}, {arena.goal[1]:.2f}) from site {name!r} "
-                f"({place[0]:.2f}, {place[1]:.2f}); open a passage wider than {2 * radius:g} m"
+                f"({place[0]:.2f}, {place[1]:.2f}); {_advice(plan, (place, arena.goal), radius)}"
             )
+
+
+def _advice(plan: FloorPlan, places: tuple[FloatArray, FloatArray], radius: float) -> str:
+    """Say what to do where a robot cannot go between two places."""
+    low, high = np.reshape(plan.bounds, (2, 2))
+    if all(((low < place) & (place < high)).all() for place in places):
+        return f"open a passage wider than {2 * radius:g} m"
+    return f"the floor is {plan.describe_bounds()}"
 
 
 def _planar_pose(data: mujoco.MjData, site: int) -> FloatArray:
