@@ -60,7 +60,7 @@ def _brightness(image: Image.Image) -> tuple[FloatArray, Mask]:
     if image.mode.startswith("I"):  # 16 bits
         values = np.asarray(image, dtype=np.float64) / 65535
         return values, np.ones(values.shape, dtype=np.bool_)
-    if image.mode == "1" or image.mode == "L":
+    if image.mode in ("1", "L") and "transparency" not in image.info:
         values = np.asarray(image.convert("L"), dtype=np.float64) / 255
         return values, np.ones(values.shape, dtype=np.bool_)
     pixels = np.asarray(image.convert("RGBA"), dtype=np.float64) / 255

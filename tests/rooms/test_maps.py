@@ -62,6 +62,17 @@ def test_keys_of_other_programs_are_ignored(tmp_path: Path) -> None:
     assert (read_ros_map(path).cells == read_ros_map(write_map(tmp_path, floor())).cells).all()
 
 
+def test_what_is_transparent_is_unknown(tmp_path: Path) -> None:
+    pixels = floor()
+    path = write_map(tmp_path, pixels, "map.png")
+    usual = read_ros_map(path).cells
+    Image.fromarray(pixels).save(tmp_path / "map.png", transparency=254)  # a shade of grey
+    assert (read_ros_map(path).cells == np.where(usual == FREE, UNKNOWN, usual)).all()
+    opacity = np.where(pixels == 254, 0, 255).astype(np.uint8)
+    Image.fromarray(np.dstack([pixels, opacity])).save(tmp_path / "map.png")
+    assert (read_ros_map(path).cells == np.where(usual == FREE, UNKNOWN, usual)).all()
+
+
 def test_modes_and_thresholds(tmp_path: Path) -> None:
     pixels = np.array([[0, 100, 150, 205, 255]], dtype=np.uint8)  # darkness 1, .61, .41, .2, 0
     cases: tuple[tuple[dict[str, Any], list[int]], ...] = (
