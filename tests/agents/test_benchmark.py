@@ -112,6 +112,18 @@ def test_killed_and_started_again_it_makes_the_same_tables(
     assert content(tmp_path) == content(whole)
 
 
+def test_a_quick_look_takes_what_is_said_though_it_be_the_usual(
+    small_room: Path, tmp_path: Path
+) -> None:
+    words = ["--quick", "--rooms", str(small_room), "--agents", "straight", "--seeds", "3"]
+    assert main(["benchmark", *words, "--jobs", "1", "--out", str(tmp_path)]) == 0
+    folder = tmp_path / "benchmark-quick"
+    rows = list(csv.DictReader((folder / "runs.csv").read_text().splitlines()))
+    assert [row["seed"] for row in rows] == ["0", "1", "2"]
+    assert {row["starts"] for row in rows} == {"8"}  # of which nothing is said
+    assert "--seeds 3 --quick" in (folder / "tables.md").read_text()
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [

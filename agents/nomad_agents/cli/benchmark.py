@@ -21,7 +21,9 @@ from nomad_mj.errors import ConfigError
 
 _QUICK_SETS, _QUICK_CASES = ("convex", "wide", "concave"), 1
 _QUICK_AGENTS = ("straight", "planner", "reactive_planner:tuned")
-_QUICK = {"seeds": 1, "starts": 8, "check_starts": 4, "budget": 300}  # where nothing is said
+# How much is done where nothing is said.
+_USUAL = {"seeds": 3, "deep_seeds": 5, "starts": 20, "check_starts": 10, "budget": 10000}
+_QUICK = {**_USUAL, "seeds": 1, "starts": 8, "check_starts": 4, "budget": 300}
 
 
 @dataclass(frozen=True)
@@ -40,16 +42,17 @@ class Benchmark:
     """Names of rooms, or MJCF files, each a set of its own."""
     robots: tuple[str, ...] = (DEFAULT_ROBOT,)
     """Names of robots, or MJCF files."""
-    seeds: int = 3
-    """Runs of each agent in each task, with the seeds 0, 1, ..."""
-    deep_seeds: int = 5
-    """Of deep learners, if that is less than --seeds."""
-    starts: int = 20
-    """Unseen starts that every run is evaluated from."""
-    check_starts: int = 10
-    """Other unseen starts, from which learners are checked now and then while they learn."""
-    budget: int = 10000
-    """Decisions of learning, at most."""
+    seeds: int | None = None
+    """Runs of each agent in each task, with the seeds 0, 1, ...; 3, or 1 with --quick."""
+    deep_seeds: int | None = None
+    """Of deep learners, if that is less than --seeds; 5 by default."""
+    starts: int | None = None
+    """Unseen starts that every run is evaluated from; 20, or 8 with --quick."""
+    check_starts: int | None = None
+    """Other unseen starts, from which learners are checked now and then while they learn; 10, or
+    4 with --quick."""
+    budget: int | None = None
+    """Decisions of learning, at most; 10000, or 300 with --quick."""
     curves: bool = False
     """Check learners all along, not only until 90 % are mastered, for whole learning curves."""
     quick: bool = False
@@ -104,24 +107,18 @@ class Benchmark:
         agents = self.agents
         if self.quick and agents == usual_agents():
             agents = _QUICK_AGENTS
-        plan = Plan(
+        return Plan(
             agents=agents,
             sets=self._sets(),
             robots=self.robots,
-            seeds=self.seeds,
-            deep_seeds=self.deep_seeds,
-            starts=self.starts,
-            check_starts=self.check_starts,
-            budget=self.budget,
             whole_curves=self.curves,
+            **{name: self._size(name) for name in _USUAL},
         )
-        if not self.quick:
-            return plan
-        usual = Benchmark()
-        left = {
-            name: n for name, n in _QUICK.items() if getattr(self, name) == getattr(usual, name)
-        }
-        return replace(plan, **left)
+
+    def _size(self, name: str) -> int:
+        """Return how much of something is done, as the option says or by default."""
+        given: int | None = getattr(self, name)
+        return (_QUICK if self.quick else _USUAL)[name] if given is None else given
 
     def _results(self, runs: list[BenchmarkRun], folder: Path, screen: Console) -> list[Result]:
         """Return the results, with a progress bar over all runs."""
@@ -138,8 +135,8 @@ class Benchmark:
         for name in ("agents", "sets", "rooms", "robots"):
             if getattr(self, name) != getattr(usual, name):
                 words += [f"--{name}", *getattr(self, name)]
-        for name in ("seeds", "deep_seeds", "starts", "check_starts", "budget"):
-            if getattr(self, name) != getattr(usual, name):
+        for name in _USUAL:
+            if getattr(self, name) is not None:
                 words += [f"--{name.replace('_', '-')}", str(getattr(self, name))]
         words += [f"--{name}" for name in ("curves", "quick") if getattr(self, name)]
         return shlex.join(words)
