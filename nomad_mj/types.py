@@ -62,6 +62,20 @@ class SensorLayout:
         """Number of range sensors in all rings together."""
         return sum(len(ring.bearings) for ring in self.rings)
 
+    @property
+    def least_readings(self) -> FloatArray:
+        """Least that any sensor reads of what is straight before each sensor, (count,) [m].
+
+        Those count whose cones the axis of that sensor lies in: its own, and others'.
+        """
+        sizes = [len(ring.bearings) for ring in self.rings]
+        bearings = np.concatenate([ring.bearings for ring in self.rings])
+        half_angle = np.repeat([ring.half_angle for ring in self.rings], sizes)
+        least = np.repeat([ring.min_range for ring in self.rings], sizes)
+        apart = np.abs((bearings[:, None] - bearings + math.pi) % math.tau - math.pi)
+        # The last bits of bearings differ from processor to processor.
+        return np.where(apart <= half_angle + 1e-6, least, np.inf).min(axis=1)
+
     def matches(self, other: "SensorLayout") -> bool:
         """Return whether both are the same sensors, but for rounding.
 

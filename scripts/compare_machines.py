@@ -43,15 +43,18 @@ def numbers(held: dict[str, Any]) -> dict[str, Any]:
     return dict(leaves([held["row"], held["episodes"], held["curve"]]))
 
 
-def main(here: Path, there: Path) -> None:
-    """Print how many runs agree, how far, and the work of either machine."""
-    equal, near, apart, seconds = 0, [0.0], list[str](), [0.0, 0.0]
+def compare(here: Path, there: Path) -> str:
+    """Return how many runs agree, how far, and the work of either machine."""
+    equal, near, apart, seconds = 0, list[float](), list[str](), [0.0, 0.0]
     for path in sorted(here.glob("*.json")):
         if not (there / path.name).exists():
             continue
         pair = [json.loads((folder / path.name).read_text()) for folder in (here, there)]
-        if pair[0]["key"]["experiment"] == "timing":
+        keys = [held["key"] for held in pair]
+        if keys[0]["experiment"] == "timing":
             continue
+        if keys[0] != keys[1]:
+            sys.exit(f"{path.name}: of another version, other parameters, another room or robot")
         seconds = [s + held["machine"]["cpu_s"] for s, held in zip(seconds, pair, strict=True)]
         one, other = map(numbers, pair)
         off = max((difference(one[k], other.get(k, "")) for k in one), default=0.0)
@@ -61,10 +64,17 @@ def main(here: Path, there: Path) -> None:
             near.append(off)
         else:
             equal += 1
-    print(f"{equal} runs the same to the bit, {len(near) - 1} to a share of {max(near):.0e}")
-    print(f"{len(apart)} apart", *apart, sep="\n  ")
-    print(f"core seconds: {seconds[0]:.0f} and {seconds[1]:.0f}")
+    if not (equal or near or apart):
+        sys.exit(f"{here} and {there} have no run in common")
+    lines = [
+        f"{equal} runs the same to the bit, {len(near)} to a share of {max(near, default=0):.0e}",
+        "\n  ".join([f"{len(apart)} apart", *apart]),
+        f"core seconds: {seconds[0]:.0f} and {seconds[1]:.0f}",
+    ]
+    return "\n".join(lines)
 
 
 if __name__ == "__main__":
-    main(*map(Path, sys.argv[1:3]))
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    print(compare(*map(Path, sys.argv[1:])))

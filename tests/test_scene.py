@@ -137,8 +137,19 @@ def test_a_start_or_goal_in_an_obstacle_is_refused_by_name(own_room: OwnRoom) ->
 def test_a_goal_that_cannot_be_reached_is_refused(own_room: OwnRoom) -> None:
     barrier = '<geom name="obstacle_0" type="box" size="5 0.1 0.5" pos="0 0 0.5"/>'
     wrong("room 'own'", own_room(barrier), "nomad200", "cannot reach the goal", "start_0", "0.53 m")
-    outside = own_room("", ('pos="3 3 0"', 'pos="30 3 0"'))
-    wrong("room 'own'", outside, "nomad200", "cannot reach the goal", "floor is -5.2 to 5.2 m in x")
+
+
+def test_who_asks_for_a_goal_outside_the_walls_is_told_where_the_floor_is(
+    own_room: OwnRoom,
+) -> None:
+    corners = "".join(
+        f'<geom name="wall_corner{x}5{y}5" type="box" size="0.2 0.2 0.5" pos="{x}5.1 {y}5.1 0.5"/>'
+        for x in ("", "-")
+        for y in ("", "-")
+    )
+    away = ('pos="3 3 0"', 'pos="30 3 0"')
+    wrong("room 'own'", own_room(corners, away), "nomad200", "cannot reach", "-5 to 5 m in x")
+    wrong("room 'own'", own_room("", away), "nomad200", "cannot reach", "a passage")  # open there
 
 
 def test_a_room_is_no_robot_and_a_robot_no_room(own_room: OwnRoom) -> None:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
+import shapely
 from typing_extensions import Self
 
 from nomad_mj.arenas.floor_plan import FloorPlan
@@ -117,10 +118,10 @@ def check_arena(plan: FloorPlan, arena: Arena, radius: float) -> None:
 
 def _advice(plan: FloorPlan, places: tuple[FloatArray, FloatArray], radius: float) -> str:
     """Say what to do where a robot cannot go between two places."""
-    low, high = np.reshape(plan.bounds, (2, 2))
-    if all(((low < place) & (place < high)).all() for place in places):
-        return f"open a passage wider than {2 * radius:g} m"
-    return f"the floor is {plan.describe_bounds()}"
+    enclosed = plan.enclosed
+    if enclosed is not None and len({bool(shapely.contains_xy(enclosed, *p)) for p in places}) == 2:
+        return f"the floor is {plan.describe_bounds()}"
+    return f"open a passage wider than {2 * radius:g} m"
 
 
 def _planar_pose(data: mujoco.MjData, site: int) -> FloatArray:

@@ -76,13 +76,17 @@ class FloorPlan:
         """Smallest rectangle around all footprints: ``[x0, y0, x1, y1]``; NaN in an empty plan."""
         return np.asarray(self._union.bounds, dtype=np.float64)
 
+    @property
+    def enclosed(self) -> shapely.Polygon | None:
+        """The largest floor that closed walls surround, None where there are no such walls."""
+        rings = (ring for part in shapely.get_parts(self._union) for ring in part.interiors)
+        return max((shapely.Polygon(ring) for ring in rings), key=shapely.area, default=None)
+
     def describe_bounds(self) -> str:
         """Say where the floor is: what closed walls surround, else the rectangle `bounds`."""
         if not self.footprints:
             return "without bounds"
-        rings = (ring for part in shapely.get_parts(self._union) for ring in part.interiors)
-        enclosed = max((shapely.Polygon(ring) for ring in rings), key=shapely.area, default=None)
-        x0, y0, x1, y1 = (enclosed or self._union).bounds
+        x0, y0, x1, y1 = (self.enclosed or self._union).bounds
         return f"{x0:g} to {x1:g} m in x and {y0:g} to {y1:g} m in y"
 
     def clearance(self, xy: npt.ArrayLike, radius: float) -> FloatArray:

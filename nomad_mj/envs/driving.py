@@ -63,7 +63,7 @@ class Lookout:
 
     def __init__(self, layout: SensorLayout, config: MotionConfig) -> None:
         # They read no less than their minimum.
-        distances = np.maximum(config.security_distance, 1.1 * _least_readings(layout))
+        distances = np.maximum(config.security_distance, 1.1 * layout.least_readings)
         self.motion = replace(config, security_distance=float(distances.min()))
         bearings = np.concatenate([ring.bearings for ring in layout.rings])
         self._edges, table = _slacks(
@@ -91,16 +91,6 @@ class Lookout:
         """Return the same for many robots, (n, C) [m], given (n,) and (n,)."""
         turned = np.mod(sensors - heading, _TURN)
         return self._table[np.searchsorted(self._edges, turned, side="right")]
-
-
-def _least_readings(layout: SensorLayout) -> FloatArray:
-    """Return the least that any sensor reads whose cone overlaps that of each, (C,) [m]."""
-    sizes = [len(ring.bearings) for ring in layout.rings]
-    bearings = np.concatenate([ring.bearings for ring in layout.rings])
-    half = np.repeat([ring.half_angle for ring in layout.rings], sizes)
-    least = np.repeat([ring.min_range for ring in layout.rings], sizes)
-    apart = np.abs((bearings[:, None] - bearings + math.pi) % _TURN - math.pi)
-    return np.where(apart <= half[:, None] + half, least, np.inf).min(axis=1)
 
 
 def _slacks(

@@ -7,7 +7,7 @@ edge; cells behind it count as occupied too. Nothing is integrated over time.
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,9 @@ from nomad_mj.types import FloatArray, IntArray, RangeRing, SensorLayout
 
 MOST_CELLS = 401
 _BINS = 1440  # quarters of a degree: a turret's heading is rounded to this
+
+
+_Value = TypeVar("_Value", bound=np.generic)
 
 
 @dataclass(frozen=True)
@@ -62,12 +65,13 @@ class GridSpec:
 class _Layer(NamedTuple):
     """Cones of a ring of which none covers another; P places: cells that they reach, of n robots.
 
-    Of places, arrays hold `AT_ONCE` robots; of directions two turns, so that none need be wrapped.
+    Of places, arrays hold `AT_ONCE` robots; of directions two turns and the beginning of a third,
+    D, so that none need be wrapped.
     """
 
-    covered: npt.NDArray[np.bool_] | None  # (2 bins,) whether a cone covers a direction; None: all
-    sensor: IntArray  # (2 bins,) which
-    certainty: FloatArray  # (2 bins,) at that direction
+    covered: npt.NDArray[np.bool_] | None  # (D,) whether a cone covers a direction; None: all
+    sensor: IntArray  # (D,) which
+    certainty: FloatArray  # (D,) at that direction
     place: IntArray | None  # (P,) each place, as an index of grids (n, cells**2); None: all
     robot: IntArray  # (P,) its robot's first reading, as an index of readings (n, count)
     distance: FloatArray  # (P,) from its robot's centre [m]
@@ -133,9 +137,9 @@ def _layers(
         certain = np.take_along_axis(certainty, sensor[:, None], axis=1)[:, 0]
         layers.append(
             _Layer(
-                covered=None if covered.all() else np.tile(covered, 2),
-                sensor=np.tile(sensor + first, 2),
-                certainty=np.tile(certain, 2),
+                covered=None if covered.all() else _two_turns(covered),
+                sensor=_two_turns(sensor + first),
+                certainty=_two_turns(certain),
                 place=None
                 if len(reached) == len(distance)
                 else (robots * len(distance) + reached).ravel(),
@@ -144,6 +148,11 @@ def _layers(
             )
         )
     return layers
+
+
+def _two_turns(values: npt.NDArray[_Value]) -> npt.NDArray[_Value]:
+    """Return a table of directions (bins,) for the indices of `_bins`."""
+    return np.resize(values, 2 * _BINS + 1)
 
 
 def certainty_grid(
@@ -206,7 +215,7 @@ def _fill(
 
 
 def _bins(angle: FloatArray, headings: FloatArray) -> IntArray:
-    """Return the direction of each cell from each robot's sensors, in the first two turns."""
+    """Return each cell's direction from each robot's sensors, from 0 to the end of a 2nd turn."""
     turn = headings[:, None] * (_BINS / (2 * np.pi))
     direction = angle - turn
     np.rint(direction, out=direction)
@@ -222,6 +231,7 @@ def _tell(
     robot, distance = layer.robot[:count], layer.distance[:count]
     place = None if layer.place is None else layer.place[:count]
     near = bins if place is None else bins.take(place)
+    # All are within the tables: to clip only spares the search for those that are not.
     if layer.covered is not None:
         chosen = np.flatnonzero(layer.covered.take(near, mode="clip"))
         place = chosen if place is None else place.take(chosen)

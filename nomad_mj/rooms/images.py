@@ -33,7 +33,7 @@ def read_image(path: Path) -> tuple[FloatArray, Mask]:
     Raises
     ------
     ModelError
-        No such file, no image, or one that is too large.
+        No such file, no image, one that is too large, or grey with a shade that is transparent.
     """
     name = str(path) if len(str(path)) <= 200 else f"{str(path)[:197]}..."
     what = f"map image {name!r}"
@@ -48,6 +48,10 @@ def read_image(path: Path) -> tuple[FloatArray, Mask]:
                     f"{what} has {image.width} x {image.height} pixels; at most "
                     f"{MOST_PIXELS // 2**20} million: cut it or make it coarser"
                 )
+            if "transparency" in image.info and image.mode not in ("P", "RGB"):
+                raise ModelError(
+                    f"{what} has a transparent shade of grey: give it an alpha channel"
+                )
             return _brightness(image)
     except UnidentifiedImageError:
         raise ModelError(f"{what} is no PGM, PNG or BMP image") from None
@@ -60,7 +64,7 @@ def _brightness(image: Image.Image) -> tuple[FloatArray, Mask]:
     if image.mode.startswith("I"):  # 16 bits
         values = np.asarray(image, dtype=np.float64) / 65535
         return values, np.ones(values.shape, dtype=np.bool_)
-    if image.mode in ("1", "L") and "transparency" not in image.info:
+    if image.mode == "1" or image.mode == "L":
         values = np.asarray(image.convert("L"), dtype=np.float64) / 255
         return values, np.ones(values.shape, dtype=np.bool_)
     pixels = np.asarray(image.convert("RGBA"), dtype=np.float64) / 255

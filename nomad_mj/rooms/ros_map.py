@@ -15,7 +15,8 @@ from nomad_mj.types import FloatArray
 from nomad_mj.values import number, numbers, read_yaml
 
 MODES = ("trinary", "scale", "raw")
-_OPTIONAL = ("origin", "negate", "occupied_thresh", "free_thresh", "mode")
+_OPTIONAL = ("origin", "negate", "occupied_thresh", "free_thresh")  # `mode` is like many a word
+_ALIKE = 0.88  # orgin and free_threshold are, original and negative are not
 _OCCUPIED, _FREE = 0.65, 0.25  # defaults of the map server in ROS 2
 _UNSURE = 0.5  # of `scale`, between free and occupied
 
@@ -27,7 +28,7 @@ def read_ros_map(path: Path) -> Occupancy:
     the lower left corner; [m], [rad]), ``negate``, ``occupied_thresh``, ``free_thresh`` and
     ``mode``: `trinary`, `scale` (of what lies between the thresholds the darker half is occupied)
     or `raw` (a pixel is the percentage). All but the first two may be left out. Transparent
-    pixels are unknown. Keys of other programs are ignored.
+    pixels are unknown. Other keys are ignored, but for what is nearly one of these that is missing.
 
     Raises
     ------
@@ -54,10 +55,9 @@ def read_ros_map(path: Path) -> Occupancy:
 def _refuse_misspelt(held: dict[Any, Any], what: str) -> None:
     """Raise ModelError for a key that is nearly one of a map's: a default would stand for it."""
     for key in held:
-        if key in ("image", "resolution", *_OPTIONAL):
-            continue
-        for meant in difflib.get_close_matches(str(key).lower(), _OPTIONAL, 1, 0.7):
-            raise ModelError(f"{what} knows no {str(key)!r}; is it {meant!r}?")
+        for meant in difflib.get_close_matches(str(key).lower(), _OPTIONAL, 1, _ALIKE):
+            if meant not in held:
+                raise ModelError(f"{what} knows no {str(key)!r}; is it {meant!r}?")
 
 
 def read_floor_image(path: Path, resolution: float, origin: tuple[float, float]) -> Occupancy:

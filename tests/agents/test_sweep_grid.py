@@ -161,8 +161,10 @@ def test_a_file_says_the_same_as_words(tmp_path: Path) -> None:
         ("agent=td3 decisions=0", "decisions 0: must be 1 or more"),
         ("agent=ppo observation=smell", "observation 'smell': must be situation or ranges"),
         ("--only-read", "holds no results of a sweep"),
-        ("--only-read --seeds 2", "--only-read shows all there is in --out, and takes no"),
-        ("--only-read --starts 9", "--only-read shows all there is in --out, and takes no"),
+        ("--only-read k_ind=0.1", "--only-read shows all there is in --out; beside that it takes"),
+        ("--only-read --seeds 2", "--only-read shows all there is in --out; beside that it takes"),
+        ("--only-read --starts 9", "--only-read shows all there is in --out; beside that it takes"),
+        ("--only-read --jobs 7", "--only-read shows all there is in --out; beside that it takes"),
     ],
 )
 def test_mistakes_are_told_in_one_line_before_anything_is_run(

@@ -56,7 +56,7 @@ def test_each_side_is_as_far_off_as_its_own_sensors_can_tell() -> None:
     more = 1.1 * 0.3 - config.security_distance  # that the lidar cannot tell
     ahead = lookout.slack(0.0, 0.0)
     assert ahead[1:4] == pytest.approx(-more)  # nothing else looks there
-    assert ahead[[0, 4, 5, 8]] == pytest.approx(config.beside)  # infrared looks there, too
+    assert ahead[[0, 4, 5, 8]] == pytest.approx([config.beside - more] * 2 + [config.beside] * 2)
     assert np.isinf(ahead[6:8]).all()
     assert (lookout.slack(math.pi, 0.0)[6:8] == 0.0).all()
 

@@ -147,6 +147,15 @@ def test_hundreds_on_threads_are_handled_as_each_by_itself(threads: int) -> None
         np.testing.assert_array_equal(code_grid(grids, threads)[i], code_grid(one))
 
 
+@pytest.mark.parametrize("off", [-0.002, -0.001, 0.0, 0.001, 0.002])
+@pytest.mark.parametrize("turns", [-2, 0, 1])
+def test_what_is_straight_behind_is_found_from_any_heading(turns: int, off: float) -> None:
+    # A cone of half a degree: whoever looks up a neighbouring direction does not see it.
+    one = SensorLayout(0.2, (RangeRing("one", (0.0,), math.radians(0.25), 0.0, 6.0),))
+    grid = certainty_grid(np.array([1.0]), turns * math.tau - math.pi + off, one, SPEC)
+    assert (grid[10, :9] != SPEC.unseen).all() and (grid[10, 12:] == SPEC.unseen).all()
+
+
 @given(readings(NOMAD), headings)
 def test_the_order_of_rings_does_not_matter(ranges: FloatArray, heading: float) -> None:
     grid = certainty_grid(ranges[0], heading, NOMAD, SPEC)

@@ -57,8 +57,26 @@ def test_all_kinds_of_images_say_the_same(tmp_path: Path) -> None:
     assert (read_ros_map(plain).cells == usual).all()
 
 
+@pytest.mark.parametrize(
+    ("key", "meant"),
+    [
+        ("orgin", "origin"),
+        ("Negate", "negate"),
+        ("occupied_threshold", "occupied_thresh"),
+        ("free_threshold", "free_thresh"),
+    ],
+)
+def test_a_misspelt_key_is_told(key: str, meant: str, tmp_path: Path) -> None:
+    path = write_map(tmp_path, floor())
+    path.write_text(path.read_text().replace(meant, key))
+    with pytest.raises(NomadError, match=f"knows no '{key}'; is it '{meant}'"):
+        read_ros_map(path)
+
+
 def test_keys_of_other_programs_are_ignored(tmp_path: Path) -> None:
-    path = write_map(tmp_path, floor(), cost_translation_table=[0, 100], frame_id="map", floor=2)
+    path = write_map(
+        tmp_path, floor(), original="a.pgm", model="x", negative=1, orgin_x=1, Origin=3
+    )
     assert (read_ros_map(path).cells == read_ros_map(write_map(tmp_path, floor())).cells).all()
 
 
@@ -66,11 +84,17 @@ def test_what_is_transparent_is_unknown(tmp_path: Path) -> None:
     pixels = floor()
     path = write_map(tmp_path, pixels, "map.png")
     usual = read_ros_map(path).cells
-    Image.fromarray(pixels).save(tmp_path / "map.png", transparency=254)  # a shade of grey
-    assert (read_ros_map(path).cells == np.where(usual == FREE, UNKNOWN, usual)).all()
     opacity = np.where(pixels == 254, 0, 255).astype(np.uint8)
     Image.fromarray(np.dstack([pixels, opacity])).save(tmp_path / "map.png")
     assert (read_ros_map(path).cells == np.where(usual == FREE, UNKNOWN, usual)).all()
+
+
+@pytest.mark.parametrize(("mode", "shade"), [("1", 1), ("L", 254), ("I;16", 65535)])
+def test_a_transparent_shade_of_grey_is_refused(mode: str, shade: int, tmp_path: Path) -> None:
+    path = write_map(tmp_path, floor(), "map.png")
+    Image.fromarray(floor()).convert(mode).save(tmp_path / "map.png", transparency=shade)
+    with pytest.raises(NomadError, match="a transparent shade of grey: give it an alpha channel"):
+        read_ros_map(path)
 
 
 def test_modes_and_thresholds(tmp_path: Path) -> None:
@@ -147,8 +171,6 @@ YAML_MISTAKES = (
     ({"occupied_thresh": 65}, "occupied_thresh 65: must be a number from 0 to 1"),
     ({"occupied_thresh": 0.1}, "must not be above occupied_thresh"),
     ({"mode": "colour"}, "there are: trinary, scale, raw"),
-    ({"occupied_threshold": 0.5}, "no 'occupied_threshold'; is it 'occupied_thresh'?"),
-    ({"Negate": 1}, "knows no 'Negate'; is it 'negate'?"),
     ({"free_thresh": 0.0}, "has no free space"),
 )
 

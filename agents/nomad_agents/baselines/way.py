@@ -33,10 +33,10 @@ def occupied_cells(percept: Percept, grid: GridSpec, occupied: float) -> FloatAr
 def reach_of(layout: SensorLayout, safety: float) -> float:
     """Return how far from a robot's centre things are to stay [m].
 
-    Sensors that see nothing nearer than some distance call for that much more: path finding stops
-    the robot there.
+    Where sensors see nothing nearer than some distance path finding stops the robot there. Where
+    that is farthest decides for all directions.
     """
-    return layout.radius + safety + min(ring.min_range for ring in layout.rings)
+    return layout.radius + safety + float(layout.least_readings.max())
 
 
 def free_way(headings: FloatArray, cells: FloatArray, reach: float) -> FloatArray:

@@ -79,11 +79,11 @@ class Sweep:
         for name in self.metric:
             if "=" in name:
                 raise ConfigError(f"sweep: {name!r} follows --metric: options come before it")
-        selects = (self.options, self.grid, self.seeds, self.starts)
-        if self.only_read and selects != ((), "", Sweep.seeds, Sweep.starts):
+        works = ("options", "grid", "seeds", "starts", "jobs", "backend", "address")
+        if self.only_read and any(getattr(self, each) != getattr(Sweep, each) for each in works):
             raise ConfigError(
-                "sweep: --only-read shows all there is in --out, and takes no options, --grid, "
-                "--seeds or --starts"
+                "sweep: --only-read shows all there is in --out; beside that it takes --metric "
+                "and --json"
             )
         if self.address and self.jobs != Sweep.jobs:
             raise ConfigError(

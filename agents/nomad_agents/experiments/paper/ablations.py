@@ -18,10 +18,11 @@ from nomad_agents.experiments.experiment import (
     Verdict,
     column,
 )
-from nomad_agents.experiments.learnt import learn, trained_agent
+from nomad_agents.experiments.learnt import trained_agent
 from nomad_agents.experiments.pictures import spread_starts
 from nomad_agents.reactive_planner import ReactivePlanner, ReactivePlannerConfig
 from nomad_agents.registry import find_config
+from nomad_agents.studies.learning import learn
 from nomad_agents.studies.measures import assess, episode_rows
 from nomad_agents.studies.runs import Result, Run
 from nomad_agents.training import TrainingConfig

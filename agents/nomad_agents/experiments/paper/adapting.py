@@ -15,7 +15,7 @@ from nomad_agents.experiments.experiment import (
     Verdict,
     column,
 )
-from nomad_agents.experiments.learnt import acting_agent, keep_agent, kept_agent, learn
+from nomad_agents.experiments.learnt import acting_agent, keep_agent, kept_agent
 from nomad_agents.experiments.paper.places import (
     SHOWN,
     cases_of,
@@ -27,6 +27,7 @@ from nomad_agents.experiments.paper.places import (
 from nomad_agents.experiments.pictures import spread_starts, way
 from nomad_agents.reactive_planner import ReactivePlanner
 from nomad_agents.registry import find_config
+from nomad_agents.studies.learning import learn
 from nomad_agents.studies.measures import assess, episode_rows
 from nomad_agents.studies.runs import Result, Row, Run
 from nomad_agents.training import TrainingConfig
