@@ -76,16 +76,12 @@ class _Layer(NamedTuple):
     robot: IntArray  # (P,) its robot's first reading, as an index of readings (n, count)
     distance: FloatArray  # (P,) from its robot's centre [m]
 
-    @property
-    def whole(self) -> bool:
-        """Whether it tells of every cell."""
-        return self.covered is None and self.place is None
-
 
 class _Tables(NamedTuple):
     """What depends on the layout alone."""
 
     layers: tuple[_Layer, ...]
+    whole: bool  # whether one of them tells of every cell
     limit: FloatArray  # (count,) readings from here on are a miss
     angle: FloatArray  # (cells**2,) bearing of each cell's centre, in bins
     inside: IntArray  # cells where the robot itself stands
@@ -111,6 +107,7 @@ def _tables(layout: SensorLayout, spec: GridSpec) -> _Tables:
     ]
     return _Tables(
         layers=tuple(layers),
+        whole=any(layer.covered is None and layer.place is None for layer in layers),
         limit=np.minimum(max_range, spec.perception_range),
         angle=np.arctan2(centres[:, 1], centres[:, 0]) * (_BINS / (2 * np.pi)),
         inside=np.flatnonzero(distance <= layout.radius),
@@ -200,7 +197,6 @@ def _fill(
     """Fill grids (n, cells**2), given how far each sensor's surface is (n, count) [m]."""
     bins = _bins(tables.angle, headings)
     flat = grids.reshape(-1)
-    whole = any(layer.whole for layer in tables.layers)
     flat.fill(np.inf)
     for layer in tables.layers:
         place, told = _tell(layer, bins, surfaces, spec)
@@ -209,7 +205,7 @@ def _fill(
             np.minimum(told, flat, out=flat)
         else:
             flat[place] = np.minimum(told, flat.take(place), out=told)
-    if not whole:
+    if not tables.whole:
         np.copyto(grids, spec.unseen, where=np.isinf(grids))
     grids[:, tables.inside] = 0.0
 

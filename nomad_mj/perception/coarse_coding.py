@@ -66,15 +66,16 @@ def code_grid(grid: FloatArray, threads: int = 1) -> FloatArray:
 
     On so many `threads` hundreds of grids are coded side by side, to the same bits.
     """
+    if threads == 1:
+        for side, stride in GRID_FIELDS:
+            grid = pool(grid, side, stride)
+        return grid
     *lead, cells, _ = grid.shape
     grids = grid.reshape(-1, cells, cells)
     coded = np.empty((len(grids), coded_cells(cells), coded_cells(cells)))
 
     def code(part: slice) -> None:
-        fields = grids[part]
-        for side, stride in GRID_FIELDS:
-            fields = pool(fields, side, stride)
-        coded[part] = fields
+        coded[part] = code_grid(grids[part])
 
     side_by_side(code, len(grids), threads)
     return coded.reshape(*lead, *coded.shape[1:])
